@@ -275,7 +275,7 @@ bool is_proved_segment(const LinkKind::Segment& segment, const MatrixXd& window,
            });
 }
 
-constexpr int kDepthOfKinds = 6, kDepthOfData = 1;  // how often segments are halved; data are refined in the mesh, too
+constexpr int kDepthOfKinds = 6, kDepthOfData = 2;  // how often segments are halved; data are refined in the mesh, too
 
 }  // namespace
 
@@ -397,7 +397,7 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double err
     const Eigen::DiagonalMatrix<double, 3> faster(1 / kind.rates[0], 1 / kind.rates[1], 1 / kind.rates[2]);
     // How many shells there are until q is small enough; with many, refinement of the mesh is quicker. Errors of q grow as q
     // does, and each level adds some roundings.
-    constexpr std::size_t kMostShells = 4;
+    constexpr std::size_t kMostShells = 8;
     const auto off_at = [&](std::size_t level) {
         return 2 * slack * kind.growth + (1 + 4 * static_cast<double>(level) * kind.growth) * kOfSteps;
     };

@@ -150,6 +150,13 @@ std::optional<PointWindow> point_window(const Topology& topology, Index point, I
         raw.push_back({static_cast<int>(at.corners[1]), static_cast<int>(at.corners[2]), static_cast<int>(at.corners[4])});
     }
     if ((topology.point_on_boundary[point] != 0) != has_rim) return std::nullopt;
+    // Where bodies touch in the point, these are the cells of one of them, and the point has the rules of both.
+    std::vector<int> directions;
+    for (const Triangle& triangle : raw) directions.insert(directions.end(), triangle.begin(), triangle.end());
+    std::ranges::sort(directions);
+    const auto repeated = std::ranges::unique(directions);
+    directions.erase(repeated.begin(), repeated.end());
+    if (directions.size() != topology.point_edges[point].size()) return std::nullopt;
     for (const Index e : topology.point_edges[point]) {
         if (topology.edge_is_crease[e] != 0) return std::nullopt;
     }

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <set>
 
 #include "lib/subdivision/certificate/scheme_definition.h"
+#include "lib/test_meshes.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
 #include "subvol/limit.h"
+#include "subvol/mesh_report.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
 
@@ -286,6 +289,58 @@ TEST(LinkKind, TheWorstDataWithinReachDoNotFold) {
                 }
             }
             EXPECT_GT(least, 0) << at.name;
+        }
+    }
+}
+
+/// A box of 4 × 4 × 3 cells, and one of the same cells `size` times as large that has the middle of its top in common.
+HexMesh touching_boxes(double size) {
+    HexMesh mesh = test::make_box(4, 4, 3);
+    const Vec3 touch(2, 2, 3);
+    const auto at = static_cast<Index>(std::ranges::find(mesh.points, touch) - mesh.points.begin());
+    const HexMesh other = test::make_box(4, 4, 3);
+    std::vector<Index> number;
+    for (const Vec3& x : other.points) {
+        const bool shared = x == Vec3(2, 2, 0);
+        number.push_back(shared ? at : static_cast<Index>(mesh.points.size()));
+        if (!shared) mesh.points.push_back(touch + size * (x - Vec3(2, 2, 0)));
+    }
+    for (auto cell : other.cells) {
+        for (Index& p : cell) p = number[p];
+        mesh.cells.push_back(cell);
+    }
+    return mesh;
+}
+
+// Where two bodies touch in a point it stays in its place: it has not the rules of the smooth boundary of one of them.
+TEST(LinkKind, PointsWhereBodiesTouchAreNotProved) {
+    for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
+        for (const Vec3& moved : {Vec3(0, 0, -.5), Vec3(.5, .5, 0)}) {
+            HexMesh mesh = touching_boxes(50);
+            *std::ranges::find(mesh.points, Vec3(2, 2, 3)) += moved;
+            // The limit folds there: refined cells have corners of negative determinant.
+            ASSERT_GT(inspect(refine(mesh, {.scheme = {.kind = scheme}, .levels = 3})).inverted_cells, 0U);
+            const FoldCheck check = check_folds(mesh, {.scheme = {.kind = scheme}});
+            EXPECT_LT(check.report.proved, mesh.cells.size());
+        }
+    }
+}
+
+// Of the second box a cell is inverted; what was found at the point from the first says nothing of it.
+TEST(LinkKind, VerdictsDependOnNeitherOrderNorThreads) {
+    HexMesh mesh = touching_boxes(1);
+    *std::ranges::find(mesh.points, Vec3(2, 2, 4)) = Vec3(2, 2, 1.5);
+    std::optional<FoldReport> first;
+    for (const bool turned : {false, true}) {
+        if (turned) std::ranges::rotate(mesh.cells, mesh.cells.begin() + 48);
+        for (int run = 0; run < 5; ++run) {
+            const FoldCheck check = check_folds(mesh, {.scheme = {.kind = Scheme::Bsxw}});
+            EXPECT_GT(check.report.folded, 0U);
+            if (first) {
+                EXPECT_EQ(check.report.proved, first->proved);
+                EXPECT_EQ(check.report.folded, first->folded);
+            }
+            first = check.report;
         }
     }
 }
