@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// `surface`: triangles of a mesh, a grid or points. The kind of surface is an isosurface, with or without its cap, or the
+// boundary; what is cut is the limit, the cells, or bricks; the output is one file or one share of it. Figures of a report are
+// those of the whole surface, and fields are evaluated only for formats that hold them.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The lines, numbers and columns of EnSight's files, in text or in one of three binary forms: C's, Fortran's, of either order
+// of bytes, which the first count shows. Texts of version 6 have numbers in columns of 8 and 12 that may touch; columns that a
+// writer did not keep to are read by their blanks.
 #include "ensight_data.h"
 
 #include <algorithm>

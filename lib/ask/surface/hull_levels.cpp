@@ -29,7 +29,7 @@
 #include "subvol/detail/counted_rows.h"
 #include "subvol/detail/incident.h"
 #include "subvol/detail/parallel_each.h"
-#include "subvol/detail/schemes.h"
+#include "subvol/detail/scheme_rows.h"
 #include "surface_shape.h"
 
 namespace subvol::detail {

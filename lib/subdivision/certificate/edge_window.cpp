@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// The window of a segment of an irregular edge in a mesh, and the rules that take it to the windows of its halves: found by
+// refining stars, so no rule of a scheme is written again. A window is refused where anything but the edge is irregular within
+// the reach of the rules: a second irregular edge, a crease, a sharp face, or a boundary that is not a straight end of the
+// edge.
 #include "edge_window.h"
 
 #include <algorithm>
@@ -6,7 +10,6 @@
 #include <limits>
 
 #include "subvol/detail/regular_grid.h"
-#include "subvol/detail/turned_cell.h"
 #include "subvol/refine.h"
 
 namespace subvol::detail {

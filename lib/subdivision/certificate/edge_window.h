@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "subvol/detail/turned_cell.h"
+#include "subvol/detail/regular_grid.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
 

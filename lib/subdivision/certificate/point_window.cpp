@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The window of an irregular point in a mesh, and the kind of the point: its cells as triangles of a link, in an order that
+// does not depend on the numbers of cells. Where bodies touch in the point, where it has a crease, or where the boundary is not
+// smooth around it there is no window, since the rules at the point are others than those of its link.
 #include "point_window.h"
 
 #include <algorithm>
@@ -6,7 +9,6 @@
 
 #include "edge_window.h"
 #include "subvol/detail/regular_grid.h"
-#include "subvol/detail/turned_cell.h"
 #include "subvol/refine.h"
 
 namespace subvol::detail {

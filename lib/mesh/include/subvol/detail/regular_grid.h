@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "subvol/detail/turned_cell.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
