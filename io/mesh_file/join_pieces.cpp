@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -111,9 +112,9 @@ private:
             return some;
         };
         if (std::ranges::none_of(pieces_, has_cells)) return;
-        const auto rest = std::ranges::stable_partition(pieces_, has_cells);
-        empty_.assign(std::move_iterator(rest.begin()), std::move_iterator(rest.end()));
-        pieces_.erase(rest.begin(), rest.end());
+        const auto rest = std::stable_partition(pieces_.begin(), pieces_.end(), has_cells);
+        empty_.assign(std::move_iterator(rest), std::move_iterator(pieces_.end()));
+        pieces_.erase(rest, pieces_.end());
     }
 
     void add_remarks(const MeshFile& piece) {

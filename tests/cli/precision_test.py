@@ -277,8 +277,9 @@ class KnownNumbers(Precision):
                 self.assertAlmostEqual(field["max"], field["max_at"][0], delta=1e-6)
                 surface = self.measured("surface", NUMBERS / name, "--boundary", "-o", "a.ply")
                 self.assertTrue(surface["watertight"])
-                # The deviation is an estimate, so twice of it.
-                self.assertAlmostEqual(surface["volume"], whole["volume"], delta=2 * surface["deviation"] * surface["area"])
+                # The deviation is an estimate, so twice of it; it is 0 where all sides are flat, and what is left is rounding.
+                self.assertAlmostEqual(surface["volume"], whole["volume"],
+                                       delta=2 * surface["deviation"] * surface["area"] + 1e-12 * whole["volume"])
                 made = self.measured("slice", NUMBERS / name, "--plane", "0,0,.5,0,0,1", "--resolution", 96, "-o", "a.csv")
                 with open(self.folder / "a.csv", newline="") as file:
                     rows = list(csv.DictReader(file))

@@ -282,9 +282,9 @@ private:
         const auto at = [&](Index p) -> const Vec3& { return vertices_[level.vertices[p]]; };
         const double slack = kPlanar * options_.bend_world;
         parallel_each(t.edges.size(), [&](std::size_t e) {
-            const auto [a, b] = t.edges[e];
+            const Vec3 &from = at(t.edges[e][0]), &to = at(t.edges[e][1]);
             straight[e] = t.edge_is_crease[e] != 0 && each_next_crease(level, static_cast<Index>(e), [&](Index, Index far) {
-                              return distance_to_line(at(far), at(a), at(b)) <= slack;
+                              return distance_to_line(at(far), from, to) <= slack;
                           });
         });
         parallel_each(t.faces.size(), [&](std::size_t f) {

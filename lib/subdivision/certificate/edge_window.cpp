@@ -24,7 +24,7 @@ bool has_valence(const Topology& topology, Index edge, std::size_t cells) {
 TurnedCell along_edge(const Topology& topology, Index cell, std::size_t edge) {
     const auto& [from, to] = kCellEdges[edge];
     std::array<std::size_t, 3> axes = kCornerNeighbors[from];
-    while (axes[2] != to) std::ranges::rotate(axes, axes.begin() + 1);
+    while (axes[2] != to) std::rotate(axes.begin(), axes.begin() + 1, axes.end());
     return turned_at(topology, cell, from, axes);
 }
 
@@ -162,7 +162,7 @@ std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell) {
 
 // The rules come from a star that is larger than the window, so that its boundary does not matter.
 EdgeRules edge_rules(Scheme scheme, std::size_t cells) {
-    constexpr std::size_t kMeshReach = 3, kMeshLayers = 5, kFirst = 2;  // first: the layer where the segment starts
+    constexpr std::size_t kMeshReach = 3, kMeshLayers = 5, kStart = 2;  // start: the layer where the segment starts
     const Star coarse{cells, kMeshReach}, fine{cells, 2 * kMeshReach}, star{cells, EdgeWindow::kReach};
     const HexMesh mesh = star_mesh(coarse, kMeshLayers);
     const RefinementTables tables = refinement_tables(build_topology(mesh), {.scheme = {.kind = scheme}, .levels = 1});
@@ -201,7 +201,7 @@ EdgeRules edge_rules(Scheme scheme, std::size_t cells) {
     };
     each_point([&](std::size_t at, std::size_t s, int i, int j, int layer) {
         const auto in_mesh =
-            static_cast<std::size_t>(static_cast<int>(kFirst) + layer) * coarse.points() + coarse.number(s, i, j);
+            static_cast<std::size_t>(static_cast<int>(kStart) + layer) * coarse.points() + coarse.number(s, i, j);
         units[in_mesh * columns + at] = 1;
     });
     const std::vector<double> weights = tables.apply(std::span<const double>(units), columns);
@@ -209,7 +209,7 @@ EdgeRules edge_rules(Scheme scheme, std::size_t cells) {
     const auto m = static_cast<double>(cells);
     const double denominator = 512 * m * m * (m + 2);
     const auto put_row = [&](Eigen::MatrixXd& rows, std::size_t row, std::size_t s, int i, int j, int layer) {
-        const auto l = static_cast<std::size_t>(2 * static_cast<int>(kFirst) + layer);
+        const auto l = static_cast<std::size_t>(2 * static_cast<int>(kStart) + layer);
         const std::size_t point = numbers[l * fine.points() + fine.number(s, i, j)];
         for (std::size_t c = 0; c < columns; ++c) {
             const double numerator = weights[point * columns + c] * denominator, whole = std::round(numerator);

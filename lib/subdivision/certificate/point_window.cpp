@@ -33,7 +33,7 @@ OrderedLink ordered_from(const PointLink& link, const std::map<std::array<int, 2
     std::vector<std::uint8_t> met(link.size(), 0);
     std::deque<std::pair<std::size_t, Triangle>> queue;
     Triangle from = link[start];
-    std::ranges::rotate(from, from.begin() + static_cast<std::ptrdiff_t>(first));
+    std::rotate(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(first), from.end());
     queue.push_back({start, from});
     met[start] = 1;
     while (!queue.empty()) {
@@ -54,7 +54,7 @@ OrderedLink ordered_from(const PointLink& link, const std::map<std::array<int, 2
             if (beyond == sides.end() || met[beyond->second] != 0) continue;
             met[beyond->second] = 1;
             Triangle next = link[beyond->second];
-            while (next[0] != b) std::ranges::rotate(next, next.begin() + 1);
+            while (next[0] != b) std::rotate(next.begin(), next.begin() + 1, next.end());
             queue.push_back({beyond->second, next});
         }
     }
@@ -156,8 +156,7 @@ std::optional<PointWindow> point_window(const Topology& topology, Index point, I
     std::vector<int> directions;
     for (const Triangle& triangle : raw) directions.insert(directions.end(), triangle.begin(), triangle.end());
     std::ranges::sort(directions);
-    const auto repeated = std::ranges::unique(directions);
-    directions.erase(repeated.begin(), repeated.end());
+    directions.erase(std::unique(directions.begin(), directions.end()), directions.end());
     if (directions.size() != topology.point_edges[point].size()) return std::nullopt;
     for (const Index e : topology.point_edges[point]) {
         if (topology.edge_is_crease[e] != 0) return std::nullopt;
@@ -231,7 +230,8 @@ PointRules point_rules(Scheme scheme, const PointLink& link) {
     const RefinementTables tables = refinement_tables(build_topology(mesh), {.scheme = {.kind = scheme}, .levels = 1});
     std::vector<Index> numbers(fine.points(), kNone);
     for (std::size_t c = 0; c < places.size(); ++c) {
-        const auto& [t, low] = places[c];
+        const std::size_t t = places[c].first;
+        const auto& low = places[c].second;
         for (std::size_t child = 0; child < 8; ++child) {
             for (std::size_t k = 0; k < 8; ++k) {
                 const auto along = [&](std::size_t a) { return 2 * low[a] + kCorners[child][a] + kCorners[k][a]; };
