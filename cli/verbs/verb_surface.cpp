@@ -147,10 +147,10 @@ public:
         }
         options.sides = sides;
         options.cells = body.in_part;
-        // The other formats have no fields, except as colours.
-        const bool with_fields = std::ranges::any_of(std::array{".ply", ".vtp", ".vtkhdf", ".svshare"},
-                                                     [&](const char* extension) { return output_.ends_with(extension); });
-        options.fields = with_fields || !color_field_.empty() || !body.shells.empty() || tets.asked();
+        // These formats have no fields, except as colours.
+        const std::string extension = extension_of(output_);
+        const bool no_fields = extension == ".stl" || extension == ".obj" || extension == ".glb";
+        options.fields = !no_fields || !color_field_.empty() || !body.shells.empty() || tets.asked();
         std::optional<LimitSurface> surface =
             made([&] { return limit_surface(source, field, options); },
                  [&](const auto& share) { return detail::share_of_surface(source, field, options, share); }, output, report);

@@ -396,7 +396,11 @@ int sheets_needed(const SplatScene& scene, const DepthRange& depths, const Sheet
     const double finer = std::sqrt(kTolerance / scene.image_tolerance), range = depths.max - depths.min;
     const double fewest = std::clamp(kFewest * finer, 16.0, kFewest);
     if (counts.reaches.kernels() == 0) return static_cast<int>(fewest);
-    const double straight = std::max(1.0, kBend / std::max(double{counts.bends.finest(1 - kBentPart)}, 1e-9));
+    // Where weights end the volume, where sums are not divided by them, or where light arrives through the volume, what is
+    // between sheets does not follow from the field alone.
+    const bool by_field = scene.half_weight == 0 && scene.normalized && !scene.shadowed();
+    const double bend = by_field ? double{counts.bends.finest(1 - kBentPart)} : kBend;
+    const double straight = std::max(1.0, kBend / std::max(bend, 1e-9));
     const double reach = std::max(straight * double{counts.reaches.finest(kFinestPart)}, 1e-9 * range);
     return static_cast<int>(std::clamp(std::ceil(kSheetsPerReach * finer * range / reach) + 1, fewest, kMost));
 }

@@ -215,8 +215,9 @@ NumberType type_of(const pugi::xml_node& item) {
 std::map<std::string, std::string, std::less<>> entities_of(std::string_view declarations) {
     constexpr std::string_view kBegin = "<!ENTITY";
     std::map<std::string, std::string, std::less<>> entities;
-    for (std::size_t at = declarations.find(kBegin); at != std::string_view::npos; at = declarations.find(kBegin, at + 1)) {
-        const std::string_view rest = declarations.substr(at + kBegin.size());
+    for (std::size_t at = declarations.find(kBegin), next = at; at != std::string_view::npos; at = next) {
+        next = declarations.find(kBegin, at + 1);
+        const std::string_view rest = declarations.substr(0, next).substr(at + kBegin.size());
         const std::size_t first = rest.find_first_not_of(" \t\r\n"), mark = rest.find_first_of("\"'>");
         if (first == std::string_view::npos || mark == std::string_view::npos || rest[mark] == '>') continue;
         const std::string_view name = rest.substr(first, rest.find_first_of(" \t\r\n", first) - first);
@@ -234,6 +235,7 @@ std::map<std::string, std::string, std::less<>> entities_of(std::string_view dec
 /// throws: Error(InvalidInput) if values name each other without end, or make much of little
 std::optional<std::string> with_entities(std::string_view text, const std::string& name) {
     constexpr int kMostDepth = 8;
+    constexpr std::size_t kMostOfName = 256;
     const std::size_t begin = text.find("<!DOCTYPE");
     if (begin == std::string_view::npos) return std::nullopt;
     const std::size_t open = text.find('[', begin), close = text.find("]", open);
@@ -244,7 +246,8 @@ std::optional<std::string> with_entities(std::string_view text, const std::strin
     std::string result(text.substr(0, close));
     const auto add = [&](const auto& self, std::string_view part, int depth) -> void {
         while (!part.empty()) {
-            const std::size_t mark = part.find('&'), end = part.find(';', mark);
+            const std::size_t mark = part.find('&');
+            const std::size_t end = mark == std::string_view::npos ? mark : part.substr(0, mark + kMostOfName).find(';', mark);
             const auto known =
                 end == std::string_view::npos ? entities.end() : entities.find(part.substr(mark + 1, end - mark - 1));
             const std::size_t plain = known != entities.end() ? mark : mark == std::string_view::npos ? part.size() : mark + 1;

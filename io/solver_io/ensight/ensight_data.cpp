@@ -204,16 +204,17 @@ std::vector<double> EnsightData::reals(std::size_t count, const std::string& wha
 }
 
 std::string_view EnsightData::column(std::size_t width, const std::string& what, bool of_reals) {
+    constexpr std::size_t kMostOfLine = 256;  // lines of columns are shorter
     const std::string_view rest = in_.rest();
     const std::size_t first = rest.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos) fail(what + ": the file ends");
     const std::size_t line_end = rest.substr(0, first).rfind('\n');
     const std::size_t start = line_end == std::string_view::npos ? 0 : line_end + 1;  // of the column, blanks included
-    const std::string_view line = rest.substr(0, rest.find_first_of("\r\n", first)).substr(start);
     const std::size_t from = first - start;
-    std::string_view number = line.substr(from, line.find_first_of(" \t", from) - from);
+    const std::string_view ahead = rest.substr(first, kMostOfLine);
+    std::string_view number = ahead.substr(0, ahead.find_first_of(" \t\r\n"));
     // Numbers that touch end where a column ends, real ones with an exponent; else columns were not kept to.
-    if (from < width && (from + number.size()) % width == 0) {
+    if (from < width && ((from + number.size()) % width == 0 || number.size() == kMostOfLine)) {
         const std::string_view in_column = number.substr(0, width - from);
         if (!of_reals || in_column.find_first_of("eEdD+-", 1) != std::string_view::npos) number = in_column;
     }

@@ -184,6 +184,22 @@ TEST(SheetCount, MoreKernelsOfASmoothFieldNeedNoMoreSheets) {
     EXPECT_LT(largest_difference(draw(rough, 0, 1e-4).image, draw(rough, 8000, 1).image), 3e-4F);
 }
 
+TEST(SheetCount, WhatDoesNotFollowFromTheFieldHasItsSheets) {
+    RbfVolume many = waves_in_cube(40, .2);
+    const auto sheets = [&](const SplatOptions& options) {
+        SplatOptions all = options;
+        all.method = SplatMethod::Cpu;
+        return sheets_of_picture(many, kAlongX, all);
+    };
+    const int few = sheets({});
+    const int by_kernels = sheets({.shadows = true});
+    EXPECT_GT(by_kernels, 1.5 * few);
+    EXPECT_EQ(sheets({.ambient_occlusion = .1}), by_kernels);
+    EXPECT_EQ(sheets({.normalized = false}), by_kernels);
+    many.boundary = {};  // ends where its weights do
+    EXPECT_GE(sheets({}), by_kernels);
+}
+
 const View kOnLayer({.eye = {-3, .9, 1.1}, .target = {0, .5, .5}, .up = {0, 0, 1}}, 96, 96);
 
 Optics steep() {
