@@ -239,11 +239,20 @@ private:
     }
 
     [[nodiscard]] bool proves(Index point, Index cell, const Limits& limits) const {
+        if (is_inside_straight_edge(point)) return false;  // the segments on both sides are proved by themselves
         const std::optional<PointWindow> window = point_window(topology_, point, cell);
         if (!window) return false;
         std::vector<Vec3> points;
         for (const Index p : window->points) points.push_back(mesh_.points[p] - mesh_.points[point]);
         return proves_point(link_kind(scheme_, window->link), points, limits.error);
+    }
+
+    [[nodiscard]] bool is_inside_straight_edge(Index point) const {
+        const auto edges = topology_.point_edges[point];
+        return std::ranges::any_of(edges, [&](Index e) {
+            const std::size_t cells = topology_.edge_cells[e].size();
+            return cells != 4 && is_on_straight_edge(topology_, point, cells, false);
+        });
     }
 
     static constexpr std::uint8_t kUnknownPoint = 0, kProvedPoint = 1, kOtherPoint = 2;
