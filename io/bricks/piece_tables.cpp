@@ -269,7 +269,7 @@ private:
         bool finite = true;
         const std::size_t length = tables_->components(true);
         each_column(true, [&](const FileArray& array, std::size_t column, std::size_t components) {
-            keep_least(array, records, column, length);
+            keep_least(array, records, column, length, [](std::size_t) { return true; });
             for (std::size_t i = 0; i < in_file.size(); ++i) {
                 for (std::size_t c = column; c < column + components; ++c) {
                     finite &= std::isfinite(records[i * length + c]);
@@ -288,10 +288,11 @@ private:
             const std::size_t count = std::min(kPointsOfChunk, points_ - begin);
             records.resize(count * length);
             tables_->point_values->read(begin, records_of(records));
+            const auto used = [&](std::size_t p) { return tables_->used[static_cast<Index>(begin + p)]; };
             each_column(false, [&](const FileArray& array, std::size_t column, std::size_t components) {
-                keep_least(array, records, column, length);
+                keep_least(array, records, column, length, used);
                 for (std::size_t p = 0; p < count; ++p) {
-                    if (!tables_->used[static_cast<Index>(begin + p)]) continue;
+                    if (!used(p)) continue;
                     for (std::size_t c = column; c < column + components; ++c) {
                         finite &= std::isfinite(records[p * length + c]);
                     }
@@ -301,11 +302,14 @@ private:
         return finite;
     }
 
-    // Keeps the least finite value of the first component.
-    void keep_least(const FileArray& array, const std::vector<double>& records, std::size_t column, std::size_t length) {
+    // Keeps the least finite value of the first component in the records that count.
+    template <class Counts>
+    void keep_least(const FileArray& array, const std::vector<double>& records, std::size_t column, std::size_t length,
+                    const Counts& counts) {
         double least = HUGE_VAL;
-        for (std::size_t i = column; i < records.size(); i += length) {
-            if (std::isfinite(records[i])) least = std::min(least, records[i]);
+        for (std::size_t i = 0; i * length < records.size(); ++i) {
+            const double value = records[i * length + column];
+            if (counts(i) && std::isfinite(value)) least = std::min(least, value);
         }
         if (least == HUGE_VAL) return;
         double& kept = least_.try_emplace({array.name, array.at_cells}, least).first->second;
@@ -352,7 +356,7 @@ private:
                 survey_.warnings.push_back(not_everywhere(array.name, files_.word));
             }
         }
-        survey_.warnings.push_back(joining_report(survey_.pieces(), files_.word, joined_, by, order));
+        if (survey_.pieces() > 1) survey_.warnings.push_back(joining_report(survey_.pieces(), files_.word, joined_, by, order));
         if (ghosts_ > 0) survey_.warnings.push_back(ghosts_left_out(ghosts_));
         std::ranges::copy(warnings_of_arrays(), std::back_inserter(survey_.warnings));
         tables.warnings = files_.warnings;

@@ -15,8 +15,8 @@
 // changes sides. The rules look one ring of faces about a face: a level has the children of the faces that are split, and of
 // those around them.
 //
-// Faces of the control mesh are split unless all points about them, two rings wide, lie in a plane, and the creases on their
-// sides go straight on for two edges: there the limit is the plane, and nothing is computed.
+// Faces of the control mesh are split unless they are flat (flat_faces.h): there nothing is computed. Fields are more
+// coordinates of the points: their scales make a bend that is allowed as large as that of the places.
 #include "hull_levels.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -25,7 +25,7 @@
 #include <cmath>
 #include <memory>
 
-#include "subvol/detail/boundary_rings.h"
+#include "flat_faces.h"
 #include "subvol/detail/counted_rows.h"
 #include "subvol/detail/incident.h"
 #include "subvol/detail/parallel_each.h"
@@ -42,8 +42,8 @@ using Vertex = std::uint32_t;
 // has either not been smooth, or its own bend is more than the limit.
 constexpr double kMostOfParent = 6;
 
-// Points that are nearer to a plane than this part of the bend that is allowed lie in it.
-constexpr double kPlanar = 1.0 / 16;
+// The finest level that is made for the sake of fields, which may be as rough as the numbers of nodes.
+constexpr int kLevelOfFields = 2;
 
 /// One level of some faces of the boundary.
 struct HullLevel {
@@ -60,6 +60,7 @@ struct HullLevel {
     std::vector<Index> candidates;    // faces that are either split or leaves
     std::vector<std::uint8_t> split;  // for each face
     std::vector<double> bends;        // for each face
+    std::vector<double> field_bends;
 };
 
 FacePlace middle(const FacePlace& a, const FacePlace& b) {
@@ -104,13 +105,14 @@ void prepare(HullLevel& level) {
     level.halves.assign(level.surface.edges.size(), kNone);
     level.split.assign(level.surface.faces.size(), 0);
     level.bends.assign(level.surface.faces.size(), 0);
+    level.field_bends.assign(level.surface.faces.size(), 0);
 }
 
 class HullRefiner {
 public:
     HullRefiner(const HexMesh& mesh, const Topology& topology, std::span<const std::uint8_t> chosen,
                 const SchemeOptions& scheme, const HullLevelOptions& options)
-        : topology_(topology), scheme_(scheme), options_(options) {
+        : topology_(topology), scheme_(scheme), options_(options), width_(options.fields.channels) {
         start(mesh, chosen);
     }
 
@@ -142,6 +144,8 @@ private:
         for (const Index p : part.points) {
             level.vertices.push_back(static_cast<Vertex>(vertices_.size()));
             vertices_.push_back(mesh.points[p]);
+            const auto field = options_.fields.at(p);
+            values_.insert(values_.end(), field.begin(), field.end());
             level.kinds.push_back(kinds[p]);
         }
         for (const Index e : part.edges) {
@@ -174,16 +178,18 @@ private:
         const std::unique_ptr<SchemeRules> rules = make_rules(level.surface, scheme_, level.kinds);
         std::vector<Index> looked_at = level.candidates;
         if (number == 0) {
-            const std::vector<std::uint8_t> flat = flat_faces(level);
+            // No vertex has been added yet: the first are the points.
+            const std::vector<std::uint8_t> flat =
+                flat_faces(level.surface, level.kinds, vertices_, {values_, width_}, options_.bend_world);
             std::erase_if(looked_at, [&](Index f) { return flat[f] != 0; });
         }
         compute(level, *rules, looked_at);
-        measure_bends(level, looked_at);
+        measure_bends(level, number, looked_at);
         const std::size_t leaves = leaf_count_ + level.candidates.size();
         if (number < options_.max_level && 2 * (leaves + 3 * looked_at.size()) <= options_.max_triangles) {
             for (const Index f : looked_at) {
                 const bool coarse = number == 0 || level.parent_bends[f] > kMostOfParent * options_.bend_world;
-                level.split[f] = coarse || level.bends[f] > options_.bend_world ? 1 : 0;
+                level.split[f] = coarse || std::max(level.bends[f], level.field_bends[f]) > options_.bend_world ? 1 : 0;
             }
         }
         for (const Index f : level.candidates) {
@@ -234,6 +240,7 @@ private:
             add(level.face_vertices[f], {true, f});
         }
         vertices_.resize(first + added.size());
+        values_.resize(vertices_.size() * width_);
         tbb::enumerable_thread_specific<StencilBuilder> scratch;
         parallel_each(added.size(), [&](std::size_t i) {
             StencilBuilder& row = scratch.local();
@@ -243,22 +250,24 @@ private:
             } else {
                 rules.edge_point(added[i].at, row);
             }
-            vertices_[first + i] = place_of(level, row.finish());
+            const StencilRuns stencil = row.finish();
+            const auto sum = [&](auto zero, const auto& at) {
+                std::size_t next = 0;
+                auto total = zero;
+                for (const auto& [weight, count] : stencil.runs) {
+                    auto run = zero;
+                    for (std::uint32_t k = 0; k < count; ++k) run += at(level.vertices[stencil.points[next++]]);
+                    total += weight * run;
+                }
+                return total;
+            };
+            vertices_[first + i] = sum(Vec3(0.0), [&](Vertex v) -> const Vec3& { return vertices_[v]; });
+            for (std::size_t c = 0; c < width_; ++c)
+                values_[(first + i) * width_ + c] = sum(0.0, [&](Vertex v) { return values_[v * width_ + c]; });
         });
     }
 
-    [[nodiscard]] Vec3 place_of(const HullLevel& level, const StencilRuns& row) const {
-        Vec3 place(0.0);
-        std::size_t next = 0;
-        for (const auto& [weight, count] : row.runs) {
-            Vec3 sum(0.0);
-            for (std::uint32_t i = 0; i < count; ++i) sum += vertices_[level.vertices[row.points[next++]]];
-            place += weight * sum;
-        }
-        return place;
-    }
-
-    void measure_bends(HullLevel& level, std::span<const Index> faces) const {
+    void measure_bends(HullLevel& level, int number, std::span<const Index> faces) const {
         parallel_each(faces.size(), [&](std::size_t i) {
             const Index f = faces[i];
             const auto corner = [&](std::size_t k) { return vertices_[level.vertices[level.surface.faces[f][k % 4]]]; };
@@ -270,78 +279,26 @@ private:
                 bend = std::max(bend, distance_to_line(at, corner(k), corner(k + 1)));
             }
             level.bends[f] = bend;
+            level.field_bends[f] = number < kLevelOfFields ? bend_of_fields(level, f) : 0;
         });
     }
 
-    // Flat faces of the control mesh.
-
-    /// A flag for each face: whether the limit is a part of a plane there, with straight sides where these are creases.
-    [[nodiscard]] std::vector<std::uint8_t> flat_faces(const HullLevel& level) const {
-        const Topology& t = level.surface;
-        std::vector<std::uint8_t> straight(t.edges.size()), planar(t.faces.size()), flat(t.faces.size());
-        const auto at = [&](Index p) -> const Vec3& { return vertices_[level.vertices[p]]; };
-        const double slack = kPlanar * options_.bend_world;
-        parallel_each(t.edges.size(), [&](std::size_t e) {
-            const Vec3 &from = at(t.edges[e][0]), &to = at(t.edges[e][1]);
-            straight[e] = t.edge_is_crease[e] != 0 && each_next_crease(level, static_cast<Index>(e), [&](Index, Index far) {
-                              return distance_to_line(at(far), from, to) <= slack;
-                          });
-        });
-        parallel_each(t.faces.size(), [&](std::size_t f) {
-            const auto& [a, b, c, d] = t.faces[f];
-            const Vec3 normal = glm::cross(at(c) - at(a), at(d) - at(b));
-            const double most = slack * glm::length(normal);
-            planar[f] = most > 0 && each_face_about(t, static_cast<Index>(f), [&](Index g) {
-                            return std::ranges::all_of(t.faces[g], [&](Index p) {
-                                return std::abs(glm::dot(normal, at(p) - at(t.faces[f][0]))) <= most;
-                            });
-                        });
-        });
-        parallel_each(t.faces.size(), [&](std::size_t f) {
-            flat[f] = each_face_about(t, static_cast<Index>(f), [&](Index g) { return planar[g] != 0; }) &&
-                      std::ranges::all_of(t.face_edges[f], [&](Index e) {
-                          return t.edge_is_crease[e] == 0 ||
-                                 (straight[e] != 0 &&
-                                  each_next_crease(level, e, [&](Index next, Index) { return straight[next] != 0; }));
-                      });
-        });
-        return flat;
-    }
-
-    /// Whether test(edge, its far end) is true for each crease that goes on at an end of a crease.
-    template <class Test>
-    [[nodiscard]] static bool each_next_crease(const HullLevel& level, Index edge, const Test& test) {
-        for (const Index p : level.surface.edges[edge]) {
-            if (level.kinds[p] != PointKind::Crease) continue;
-            for (const Index e : level.surface.point_edges[p]) {
-                if (e == edge || level.surface.edge_is_crease[e] == 0) continue;
-                if (!test(e, other_end(level.surface, e, p))) return false;
+    /// How far the fields at the middles of a face's sides are from the means of the ends, and in its centre from those of the
+    /// diagonals.
+    [[nodiscard]] double bend_of_fields(const HullLevel& level, Index f) const {
+        double bend = 0;
+        for (std::size_t c = 0; c < width_; ++c) {
+            const auto value = [&](Vertex v) { return values_[v * width_ + c]; };
+            std::array<double, 4> corners;
+            for (std::size_t k = 0; k < 4; ++k) corners[k] = value(level.vertices[level.surface.faces[f][k]]);
+            const double center = value(level.face_vertices[f]);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const double mid = value(level.edge_vertices[level.surface.face_edges[f][k]]);
+                bend = std::max({bend, std::abs(mid - 0.5 * (corners[k] + corners[(k + 1) % 4])),
+                                 std::abs(center - 0.5 * (corners[k] + corners[(k + 2) % 4]))});
             }
         }
-        return true;
-    }
-
-    /// Whether a test is true for a face and for all that can be reached from it about its points without crossing a crease:
-    /// on these alone the new points in the face depend.
-    template <class Test>
-    [[nodiscard]] static bool each_face_about(const Topology& t, Index face, const Test& test) {
-        if (!test(face)) return false;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const Index p = t.faces[face][k], last = t.face_edges[face][(k + 3) % 4];
-            for (const bool forward : {true, false}) {
-                Index edge = forward ? t.face_edges[face][k] : last, at = face;
-                while (t.edge_is_crease[edge] == 0) {
-                    at = other_boundary_face(t, edge, at);
-                    if (at == face) break;
-                    if (!test(at)) return false;
-                    const std::size_t slot = slot_of(t.faces[at], p);
-                    const Index next = t.face_edges[at][slot];
-                    edge = next == edge ? t.face_edges[at][(slot + 3) % 4] : next;
-                }
-                if (at == face && t.edge_is_crease[edge] == 0) break;  // all around
-            }
-        }
-        return true;
+        return bend;
     }
 
     // The next level.
@@ -448,7 +405,9 @@ private:
     const Topology& topology_;
     SchemeOptions scheme_;
     HullLevelOptions options_;
+    std::size_t width_;  // channels of the fields
     std::vector<Vec3> vertices_;
+    std::vector<double> values_;  // width_ numbers for each vertex
     std::vector<HullLevel> levels_;
     std::vector<Index> refined_;  // faces of the last level that have children
     std::size_t leaf_count_ = 0;

@@ -32,11 +32,20 @@ struct HullLeaf {
     std::array<std::uint32_t, 4> middles{};
     std::array<std::uint32_t, 4> corners{};  ///< where they are in `ring`
     LeafVertex center{};                     ///< kNoVertex if it has not been computed
-    double bend = 0;  ///< how far the limit is from the middles of its sides, or its centre from a diagonal
+    double bend = 0;  ///< how far the limit's place is from the middles of its sides, or its centre from a diagonal
+};
+
+/// Values beside the places of points, each scaled so that where it bends counts as where the boundary does.
+struct HullFields {
+    std::span<const double> values{};  ///< `channels` numbers for each point
+    std::size_t channels = 0;
+
+    [[nodiscard]] std::span<const double> at(std::size_t point) const { return values.subspan(point * channels, channels); }
 };
 
 struct HullLevelOptions {
     double bend_world = 0;          ///< leaves bend by no more, unless one of the other limits ends the refinement
+    HullFields fields{};            ///< of the points of the mesh
     int max_level = 6;              ///< 1 to 8
     std::size_t max_triangles = 0;  ///< about the most that leaves may have
     Progress* progress = nullptr;

@@ -48,6 +48,7 @@ public:
 
 private:
     [[nodiscard]] SettledCut make_hull(const Share& share) const;
+    [[nodiscard]] std::vector<double> scaled_values(double bend_world) const;
     [[nodiscard]] LimitExtent extent_of_field() const;
     void add_fields(SettledPoints& settled) const;
     [[nodiscard]] bool has_constant_fields() const;
@@ -66,6 +67,8 @@ private:
 };
 
 constexpr int kFirstLevel = 1;
+
+constexpr double kOfRange = 4;  // fields bend by no more than so many tolerances of their range: a step of 8-bit colours
 
 constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // points whose fields are evaluated at a time
 
@@ -189,8 +192,11 @@ std::optional<SettledCut> SurfaceMaker::make(const Cut& cut, const Share& share)
 
 /// The boundary alone, of a scheme that interpolates: every share makes all of it but for the fields.
 SettledCut SurfaceMaker::make_hull(const Share& share) const {
+    const double bend_world = (1 - kOfMending) * tolerance_world_ / kTriangleBend;
+    const std::vector<double> values = scaled_values(bend_world);
     const HullLeaves hull = refine_hull(mesh_, topology_, owned_, options_.scheme,
-                                        {.bend_world = (1 - kOfMending) * tolerance_world_ / kTriangleBend,
+                                        {.bend_world = bend_world,
+                                         .fields = {values, values.size() / mesh_.points.size()},
                                          .max_level = options_.max_level,
                                          .max_triangles = options_.max_triangles,
                                          .progress = options_.progress});
@@ -203,6 +209,35 @@ SettledCut SurfaceMaker::make_hull(const Share& share) const {
     if (!share.whole()) made = part_of(made, made.range);
     add_fields(made.settled);
     return made;
+}
+
+/// For each point the channels of all fields that are limits of values and are wanted: kOfRange times the tolerance of a
+/// field's range becomes the bend that is allowed.
+std::vector<double> SurfaceMaker::scaled_values(double bend_world) const {
+    struct Scaled {
+        const Attribute* field;
+        double scale;
+    };
+    std::vector<Scaled> fields;
+    std::size_t channels = 0;
+    for (std::size_t f = 0; options_.fields && f < mesh_.attributes.size(); ++f) {
+        const Attribute& field = mesh_.attributes[f];
+        const auto [low, high] = whole_.ranges[f];
+        const double allowed = kOfRange * options_.tolerance * (high - low);
+        if (field.function != nullptr || field.constant || !(allowed > 0)) continue;
+        fields.push_back({&field, bend_world / allowed});
+        channels += static_cast<std::size_t>(field.channels);
+    }
+    std::vector<double> values(channels * mesh_.points.size());
+    std::size_t first = 0;
+    for (const auto& [field, scale] : fields) {
+        const auto count = static_cast<std::size_t>(field->channels);
+        for (std::size_t p = 0; p < mesh_.points.size(); ++p) {
+            for (std::size_t c = 0; c < count; ++c) values[p * channels + first + c] = scale * field->values[p * count + c];
+        }
+        first += count;
+    }
+    return values;
 }
 
 /// Evaluates the fields at settled points, if they are wanted and the settler has not done so.

@@ -76,8 +76,9 @@ struct LimitSurface {
 /// limit, by Newton's method. The level is raised until the triangles are within tolerance; of more than 2048 cells some stand
 /// for all.
 ///
-/// The boundary alone, of a scheme that interpolates, is refined without its cells, each face only where the limit bends; its
-/// normals are those of the vertices about each point.
+/// The boundary alone, of a scheme that interpolates, is refined without its cells, each face only where the limit bends, and
+/// to level 2 where fields that are wanted bend by more than four tolerances of their range; its normals are those of the
+/// vertices about each point.
 ///
 /// The pieces of a mesh that is not in memory are searched for cells that a surface may pass through; these are then gathered
 /// with their halos, and the surface is cut from them alone: with the same bits. The places of the result have the cells'

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <numbers>
 
@@ -369,10 +370,60 @@ TEST(LimitSurface, HasNoFieldsUnlessTheyAreWanted) {
         const LimitSurface without = limit_surface(mesh, "r2", options);
         EXPECT_EQ(with.fields.size(), 1U);
         EXPECT_TRUE(without.fields.empty());
-        EXPECT_EQ(with.surface.points, without.surface.points);
+        EXPECT_EQ(with.surface.points, without.surface.points);  // the bend of the ball asks for more than that of the field
         EXPECT_EQ(with.surface.triangles, without.surface.triangles);
         EXPECT_EQ(with.normals, without.normals);
     }
+}
+
+// A beam whose flat faces are two triangles but where the field bends: along x it is that of the points, 0 to 10.
+HexMesh beam_with(const std::function<double(const Vec3&)>& field) {
+    HexMesh mesh = test::make_box(8, 3, 2);
+    Attribute values{"T", 1, {}};
+    for (const Vec3& x : mesh.points) values.values.push_back(field(x));
+    mesh.attributes = {values};
+    return mesh;
+}
+
+TEST(LimitSurface, ALinearFieldLeavesFlatFacesAsTheyAre) {
+    const SurfaceOptions options{.scheme = {.crease_angle_deg = 40}, .boundary = true};
+    for (const auto& field : {+[](const Vec3& x) { return 3 * x.x - x.y + 0.5 * x.z; }, +[](const Vec3&) { return 7.0; }}) {
+        const LimitSurface found = limit_surface(beam_with(field), {}, options);
+        EXPECT_EQ(found.surface.triangles.size(), 2U * 2 * (8 * 3 + 3 * 2 + 8 * 2));
+    }
+}
+
+// The second evaluator is that of places in cells: at the centres of triangles it is compared with the means of their corners.
+TEST(LimitSurface, FlatFacesAreDividedWhereAFieldBends) {
+    const HexMesh mesh = beam_with([](const Vec3& x) { return x.x == 4 || x.x == 5 ? 10.0 : 0; });
+    const auto error_of_fields = [&](const LimitSurface& found) {
+        std::vector<LimitQuery> centres;
+        std::vector<double> means;
+        for (const auto& [a, b, c] : found.surface.triangles) {
+            const LimitQuery &p = found.places[a], &q = found.places[b], &r = found.places[c];
+            if (p.cell != q.cell || p.cell != r.cell) continue;
+            centres.push_back({p.cell, (p.uvw + q.uvw + r.uvw) / 3.0});
+            means.push_back((found.fields[0].values[a] + found.fields[0].values[b] + found.fields[0].values[c]) / 3);
+        }
+        EXPECT_GT(centres.size(), found.surface.triangles.size() / 4);
+        const LimitSamples samples = evaluate_limit(mesh, centres, {.scheme = {.crease_angle_deg = 40}});
+        double error = 0;
+        for (std::size_t i = 0; i < means.size(); ++i)
+            error = std::max(error, std::abs(samples.attributes[0].values[i] - means[i]));
+        return error;
+    };
+    const SurfaceOptions options{.scheme = {.crease_angle_deg = 40}, .boundary = true};
+    const LimitSurface found = limit_surface(mesh, {}, options);
+    EXPECT_EQ(found.report.level, 2);
+    EXPECT_EQ(found.report.deviation_world, 0);
+    expect_closed(found);
+    EXPECT_LT(error_of_fields(found), 0.15);  // the curve rises by 1.25 above the chord between 10 and 10, at level 2 by .08
+    EXPECT_LT(found.surface.triangles.size(), 2U * 2 * (8 * 3 + 3 * 2 + 8 * 2) * 16);  // where it does not bend, fewer
+    // At the middles of edges the four-point rule: (-0 + 9·10 + 9·10 - 0) / 16 and (-0 + 9·0 + 9·0 - 10) / 16.
+    const auto [low, high] = std::ranges::minmax(found.fields[0].values);
+    EXPECT_NEAR(high, 11.25, 1e-9);
+    EXPECT_LE(low, -0.625);
+    EXPECT_GT(low, -0.7);
 }
 
 TEST(LimitSurface, TheBoundaryIsTheSameForAnyNumberOfThreads) {
