@@ -62,17 +62,22 @@ Bernstein<Result> convolve(const Bernstein<Vec3>& a, const Bernstein<Vec3>& b, c
 
 Vec3 value_at(const Bernstein<Vec3>& polynomial, const Vec3& uvw) {
     const auto n = polynomial.size();
-    const auto basis = [&](std::size_t axis, std::size_t i) {
+    std::array<std::array<double, kMostDegree + 1>, 3> basis{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         const int degree = polynomial.degree[axis];
         const double t = uvw[static_cast<int>(axis)];
-        double value = binomial(degree, i);
-        for (std::size_t k = 0; k < i; ++k) value *= t;
-        for (std::size_t k = i; k < static_cast<std::size_t>(degree); ++k) value *= 1 - t;
-        return value;
-    };
+        for (std::size_t i = 0; i < n[axis]; ++i) {
+            double& value = basis[axis][i] = binomial(degree, i);
+            for (std::size_t k = 0; k < i; ++k) value *= t;
+            for (std::size_t k = i; k < static_cast<std::size_t>(degree); ++k) value *= 1 - t;
+        }
+    }
     Vec3 sum(0.0);
-    for (std::size_t i = 0; i < polynomial.values.size(); ++i) {
-        sum += polynomial.values[i] * (basis(0, i / (n[1] * n[2])) * basis(1, i / n[2] % n[1]) * basis(2, i % n[2]));
+    const Vec3* value = polynomial.values.data();
+    for (std::size_t i = 0; i < n[0]; ++i) {
+        for (std::size_t j = 0; j < n[1]; ++j) {
+            for (std::size_t k = 0; k < n[2]; ++k) sum += *value++ * (basis[0][i] * basis[1][j] * basis[2][k]);
+        }
     }
     return sum;
 }

@@ -231,25 +231,27 @@ PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const 
     // Bézier points of a uniform cubic spline along each axis.
     constexpr std::array<std::array<double, 4>, 4> kBezier{
         {{1.0 / 6, 4.0 / 6, 1.0 / 6, 0}, {0, 4.0 / 6, 2.0 / 6, 0}, {0, 2.0 / 6, 4.0 / 6, 0}, {0, 1.0 / 6, 4.0 / 6, 1.0 / 6}}};
-    std::vector<Vec3> bezier;
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            for (std::size_t k = 0; k < 4; ++k) bezier.push_back(points[i + 4 * j + 16 * k]);
-        }
-    }
+    constexpr std::array<std::array<std::size_t, 2>, 4> kUsed{{{0, 3}, {1, 3}, {1, 3}, {1, 4}}};  // the weights other than 0
+    std::array<Vec3, 64> bezier;
+    for (std::size_t p = 0; p < 64; ++p) bezier[p] = points[p / 16 + p / 4 % 4 * 4 + p % 4 * 16];
     for (const std::size_t stride : {std::size_t{16}, std::size_t{4}, std::size_t{1}}) {
-        std::vector<Vec3> along(64, Vec3(0.0));
-        for (std::size_t p = 0; p < 64; ++p) {
-            const std::size_t at = p / stride % 4;
-            for (std::size_t k = 0; k < 4; ++k) along[p] += bezier[p - at * stride + k * stride] * kBezier[at][k];
+        for (std::size_t first = 0; first < 64; ++first) {
+            if (first / stride % 4 != 0) continue;
+            std::array<Vec3, 4> line;
+            for (std::size_t at = 0; at < 4; ++at) {
+                Vec3 sum(0.0);
+                for (std::size_t k = kUsed[at][0]; k < kUsed[at][1]; ++k) sum += bezier[first + k * stride] * kBezier[at][k];
+                line[at] = sum;
+            }
+            for (std::size_t at = 0; at < 4; ++at) bezier[first + at * stride] = line[at];
         }
-        bezier = std::move(along);
     }
     BernsteinColumns columns;
     const std::array<std::size_t, 3> strides{16, 4, 1};
     for (std::size_t c = 0; c < 3; ++c) {
         columns[c].degree = {3, 3, 3};
         columns[c].degree[c] = 2;
+        columns[c].values.reserve(48);
         for (std::size_t p = 0; p < 64; ++p) {
             if (p / strides[c] % 4 != 3) columns[c].values.push_back((bezier[p + strides[c]] - bezier[p]) * 3.0);
         }

@@ -6,11 +6,11 @@
 #include <numeric>
 #include <optional>
 
-#include "edge_kind.h"
 #include "edge_window.h"
 #include "fold_checker.h"
 #include "link_kind.h"
 #include "point_window.h"
+#include "segment_rules.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
 #include "subvol/detail/parallel_each.h"
@@ -125,7 +125,8 @@ public:
         if (scheme_ == Scheme::Linear) return;
         topology_ = build_topology(mesh);
         is_grid_.resize(mesh.points.size());
-        points_.assign(mesh.points.size(), kUnknownPoint);
+        points_.assign(mesh.points.size(), kUnknown);
+        segments_.assign(topology_.edges.size(), kUnknown);
         parallel_each(is_grid_.size(), [&](std::size_t p) { is_grid_[p] = is_grid_point(topology_, static_cast<Index>(p)); });
     }
 
@@ -137,13 +138,6 @@ public:
             return decide_part(PolynomialPart::trilinear(corners, frame), limits);
         }
         return scheme_ == Scheme::Mcq ? decide_window(cell, frame, limits) : decide_spline(cell, frame, limits);
-    }
-
-    // Whether a cell touches a segment of an irregular edge that can be proved as a whole, at this level or a finer one.
-    [[nodiscard]] bool is_at_segment(Index cell) const {
-        if (scheme_ != Scheme::Bsxw && scheme_ != Scheme::CatmullClark) return false;
-        const std::optional<EdgeWindow> window = edge_window(topology_, cell);
-        return window && has_rules(*window) && edge_kind(scheme_, window->cells).is_bounded();
     }
 
 private:
@@ -208,20 +202,35 @@ private:
         return scheme_ == Scheme::Bsxw || (!window.is_beyond(0) && !window.is_beyond(3));
     }
 
+    // What was found for a segment holds for all cells at it, so it is kept.
     [[nodiscard]] bool is_at_proved_segment(Index cell, const Limits& limits) const {
+        const std::optional<Index> edge = irregular_edge(topology_, cell);
+        if (!edge) return false;
+        const std::uint8_t known = std::atomic_ref(segments_[*edge]).load();
+        if (known != kUnknown) return known == kProved;
+        const bool is_proved = proves_segment_at(std::ranges::min(topology_.edge_cells[*edge]), limits);
+        std::atomic_ref(segments_[*edge]).store(is_proved ? kProved : kOther);
+        return is_proved;
+    }
+
+    [[nodiscard]] bool proves_segment_at(Index cell, const Limits& limits) const {
         const std::optional<EdgeWindow> window = edge_window(topology_, cell);
         if (!window || !has_rules(*window)) return false;
-        std::vector<Vec3> points;
-        for (const Index p : window->points) points.push_back(p == kNone ? Vec3(0.0) : place(cell, p));
-        const std::size_t layer = points.size() / EdgeWindow::kLayers;
-        for (std::size_t side = 0; side < 2; ++side) {
-            const std::size_t beyond = side == 0 ? 0 : 3, last = side == 0 ? 1 : 2, before = 3 - last;
-            if (!window->is_beyond(beyond)) continue;
-            for (std::size_t p = 0; p < layer; ++p) {
-                points[beyond * layer + p] = points[last * layer + p] * 2.0 - points[before * layer + p];
-            }
+        Eigen::MatrixXd points(window->points.size(), 3);
+        for (std::size_t p = 0; p < window->points.size(); ++p) {
+            const Vec3 x = window->points[p] == kNone ? Vec3(0.0) : place(cell, window->points[p]);
+            points.row(static_cast<Eigen::Index>(p)) << x.x, x.y, x.z;
         }
-        return proves_segment(edge_kind(scheme_, window->cells), points, 3 * limits.error);
+        const Eigen::Index layer = points.rows() / static_cast<Eigen::Index>(EdgeWindow::kLayers);
+        for (const auto& [beyond, last, before] : {std::array{0, 1, 2}, std::array{3, 2, 1}}) {
+            if (!window->is_beyond(static_cast<std::size_t>(beyond))) continue;
+            points.middleRows(beyond * layer, layer) =
+                2 * points.middleRows(last * layer, layer) - points.middleRows(before * layer, layer);
+        }
+        constexpr int kHalvings = 6;
+        std::vector<DividedSegment> divided;
+        const DividedSegment whole{&segment_rules(scheme_, window->cells), std::move(points), 3 * limits.error};
+        return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
     }
 
     // What was found for a point holds for all cells at it, so it is kept.
@@ -229,10 +238,10 @@ private:
         for (const Index p : topology_.cells[cell]) {
             if (is_grid_[p] != 0) continue;
             const std::uint8_t known = std::atomic_ref(points_[p]).load();
-            if (known == kProvedPoint) return true;
-            if (known == kOtherPoint) continue;
+            if (known == kProved) return true;
+            if (known == kOther) continue;
             const bool is_proved = proves(p, cell, limits);
-            std::atomic_ref(points_[p]).store(is_proved ? kProvedPoint : kOtherPoint);
+            std::atomic_ref(points_[p]).store(is_proved ? kProved : kOther);
             if (is_proved) return true;
         }
         return false;
@@ -255,13 +264,13 @@ private:
         });
     }
 
-    static constexpr std::uint8_t kUnknownPoint = 0, kProvedPoint = 1, kOtherPoint = 2;
+    static constexpr std::uint8_t kUnknown = 0, kProved = 1, kOther = 2;
 
     const HexMesh& mesh_;
     Scheme scheme_;
     Topology topology_;
     std::vector<std::uint8_t> is_grid_;
-    mutable std::vector<std::uint8_t> points_;
+    mutable std::vector<std::uint8_t> points_, segments_;
 };
 
 // The cells of `open`, in their order, and then those of two layers around them.
@@ -319,7 +328,7 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
                 if (results[k]) {
                     add(cell, *results[k]);
                 } else {
-                    irregular.push_back({cell, cell, {}, grids.is_at_segment(cell)});
+                    irregular.push_back({cell, cell, {}});
                 }
             }
         }
@@ -356,14 +365,9 @@ void FoldChecker::add(Index control, const PartResult& result, int level) {
 
 // open: cells of a level, all of which are descendants of cells at irregular edges
 void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort) {
-    // Segments of straight edges are proved when they are small enough, so these cells are refined further.
-    constexpr int kFurther = 4;
     if (level >= options_.irregular_levels) {
-        std::erase_if(open, [&](const OpenCell& at) {
-            if (at.at_segment && level < options_.irregular_levels + kFurther) return false;
-            cells_[at.control].irregular += volume_of(at.frame);
-            return true;
-        });
+        for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
+        return;
     }
     if (open.empty()) return;
     const std::vector<Index> around = with_neighbors(mesh, open);
@@ -376,17 +380,14 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
                         kOfLevel * (level + 1) * largest_coordinate(fine), effort};
     const Grids grids(fine, scheme_.kind);
     std::vector<std::optional<PartResult>> results(8 * open.size());
-    std::vector<std::uint8_t> at_segment(results.size(), 0);
     const auto child_of = [&](std::size_t n) {
         const auto& [u, v, w] = kCornerParameters[n % 8];
         const OpenCell& parent = open[n / 8];
-        return OpenCell{static_cast<Index>(n), parent.control, parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w)),
-                        at_segment[n] != 0};
+        return OpenCell{static_cast<Index>(n), parent.control, parent.frame.child(static_cast<std::size_t>(4 * u + 2 * v + w))};
     };
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t n) {
         const OpenCell child = child_of(n);
         results[n] = grids.decide(child.cell, child.frame, limits);
-        at_segment[n] = !results[n] && grids.is_at_segment(child.cell) ? 1 : 0;
     });
     std::vector<OpenCell> next;
     for (std::size_t n = 0; n < results.size(); ++n) {

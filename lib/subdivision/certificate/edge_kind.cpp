@@ -276,19 +276,19 @@ std::optional<RingRows> ring_rows(const EdgeRules& rules, const Enclosure& kept,
     all.rows.near.resize(2 * 4 * 64 * 3, weights.size());
     Row filled = 0;
     for (const MatrixXd& ring : rules.ring) {
-        MatrixXd bezier = ring * weights.asDiagonal();
+        RowsXd bezier = ring * weights.asDiagonal();
         const double size = norm(bezier);
         for (const Row axis : {0, 1, 2}) bezier = along_axis(bezier_of_spline(), bezier, axis);
         // Each sector's ring lies about the middle of the sector, so that χ goes round the edge once.
         const MatrixXd places = bezier * kept.near.middleCols(1, 2);
         const double least = (places * Eigen::Vector2d(std::cos(middle), std::sin(middle))).minCoeff();
         if (!(least > 1e-6)) return std::nullopt;
-        std::array<MatrixXd, 3> derivatives;
+        std::array<RowsXd, 3> derivatives;
         for (Row axis = 0; axis < 3; ++axis) {
             derivatives[static_cast<std::size_t>(axis)] = along_axis(derivative_of_bezier(), bezier, axis);
         }
         for (int part = 0; part < 4; ++part) {
-            std::array<MatrixXd, 3> on_part;
+            std::array<RowsXd, 3> on_part;
             for (std::size_t c = 0; c < 3; ++c) {
                 on_part[c] = along_axis(half_of_bezier(part / 2 != 0), derivatives[c], 0);
                 on_part[c] = along_axis(half_of_bezier(part % 2 != 0), on_part[c], 1);

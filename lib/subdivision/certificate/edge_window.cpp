@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "subvol/detail/boundary_rings.h"
 #include "subvol/detail/regular_grid.h"
 #include "subvol/refine.h"
 
@@ -103,17 +104,21 @@ std::size_t Star::number(std::size_t s, int i, int j) const {
     return 1 + (s * reach + static_cast<std::size_t>(i) - 1) * (reach + 1) + static_cast<std::size_t>(j);
 }
 
-std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell) {
-    std::size_t irregular = 0, count = 0;
-    for (std::size_t e = 0; e < 12; ++e) {
-        const Index edge = topology.cell_edges[cell][e];
+std::optional<Index> irregular_edge(const Topology& topology, Index cell) {
+    std::optional<Index> irregular;
+    for (const Index edge : topology.cell_edges[cell]) {
         if (has_valence(topology, edge, 4) || topology.edge_on_boundary[edge] != 0) continue;
-        irregular = e;
-        if (++count > 1) return std::nullopt;
+        if (irregular) return std::nullopt;
+        irregular = edge;
     }
-    const Index edge = topology.cell_edges[cell][irregular];
-    const std::size_t cells = topology.edge_cells[edge].size();
-    if (count != 1 || !has_valence(topology, edge, cells)) return std::nullopt;
+    return irregular;
+}
+
+std::optional<EdgeWindow> edge_window(const Topology& topology, Index cell) {
+    const std::optional<Index> edge = irregular_edge(topology, cell);
+    if (!edge) return std::nullopt;
+    const std::size_t cells = topology.edge_cells[*edge].size(), irregular = slot_of(topology.cell_edges[cell], *edge);
+    if (!has_valence(topology, *edge, cells)) return std::nullopt;
     const TurnedCell at_edge = along_edge(topology, cell, irregular);
     std::array<bool, 2> is_end{};  // whether the edge ends at the boundary at its low and high end
     for (std::size_t side = 0; side < 2; ++side) {
@@ -249,8 +254,8 @@ std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bo
     return to;
 }
 
-std::vector<Eigen::SparseMatrix<double>> whole_ring(const EdgeRules& rules) {
-    std::vector<Eigen::SparseMatrix<double>> cells;
+std::vector<SparseRowsXd> whole_ring(const EdgeRules& rules) {
+    std::vector<SparseRowsXd> cells;
     const auto add = [&](const Eigen::MatrixXd& ring, std::size_t turn, bool mirror, bool exchange) {
         const std::vector<std::size_t> to = window_symmetry(rules.cells, turn, mirror, exchange);
         std::vector<Eigen::Triplet<double>> terms;

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "spline_rows.h"
 #include "subvol/detail/regular_grid.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
@@ -38,6 +38,9 @@ struct EdgeWindow {
     /// Whether a layer (0 first, 3 last) is beyond the boundary.
     [[nodiscard]] bool is_beyond(std::size_t layer) const { return points[layer * points.size() / kLayers] == kNone; }
 };
+
+/// The edge inside the mesh with other than four cells that a cell has; nothing if it has none or several.
+[[nodiscard]] std::optional<Index> irregular_edge(const Topology& topology, Index cell);
 
 /// The window of the irregular edge of a cell. Returns nothing unless the cell has one irregular edge, which goes straight
 /// through its window or ends at a smooth boundary: the cells at the segment have no other irregular edge or point, no other
@@ -72,6 +75,6 @@ struct EdgeRules {
 [[nodiscard]] std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bool mirror, bool exchange);
 
 /// The rules of all 6 m small cells of the ring, by the symmetries of the edge; each is right-handed.
-[[nodiscard]] std::vector<Eigen::SparseMatrix<double>> whole_ring(const EdgeRules& rules);
+[[nodiscard]] std::vector<SparseRowsXd> whole_ring(const EdgeRules& rules);
 
 }  // namespace subvol::detail

@@ -16,7 +16,8 @@ inline double up(double x) {
 }
 
 /// The largest row sum of magnitudes.
-[[nodiscard]] inline double norm(const Eigen::MatrixXd& matrix) {
+template <class Derived>
+[[nodiscard]] double norm(const Eigen::MatrixBase<Derived>& matrix) {
     return up(matrix.cwiseAbs().rowwise().sum().maxCoeff());
 }
 

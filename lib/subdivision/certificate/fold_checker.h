@@ -55,7 +55,6 @@ private:
     struct OpenCell {
         Index cell, control;
         PartFrame frame;
-        bool at_segment = false;  ///< it touches a straight irregular edge that can be proved
     };
     struct PartResult;
     struct Limits;

@@ -103,18 +103,18 @@ double spectral_norm(const Matrix3d& matrix) {
 }
 
 // The spread of three rows over a window: for each point the length of its column, times its weight if the rows are scaled.
-double size_of_rows(const Eigen::Ref<const MatrixXd>& rows) {
-    return rows.colwise().norm().sum();
+double size_of_rows(const Eigen::Ref<const RowsXd>& rows) {
+    return (rows.row(0).array().square() + rows.row(1).array().square() + rows.row(2).array().square()).sqrt().sum();
 }
 
 /// Rows of a spline cell's derivatives, as Bernstein coefficients of degree 3; scaled.
-using Derivatives = std::array<MatrixXd, 3>;
+using Derivatives = std::array<RowsXd, 3>;
 
 // How large q may be so that the cell of χ + q does not fold: (1 − κ)/G. 0 or less if χ itself is not proved.
 //
 // map: χ, scaled; row_norm: of the rows to the spline's points
 double reach_at_once(const Derivatives& derivatives, const MatrixXd& map, double row_norm) {
-    Derivatives of_map;
+    std::array<MatrixXd, 3> of_map;
     Matrix3d mean;
     for (std::size_t a = 0; a < 3; ++a) {
         of_map[a].noalias() = derivatives[a] * map;
@@ -124,7 +124,7 @@ double reach_at_once(const Derivatives& derivatives, const MatrixXd& map, double
     const Matrix3d inverse = mean.inverse();
     const double rounded = 0x1p-42 * 6 * row_norm * inverse.cwiseAbs().rowwise().sum().maxCoeff();
     double kappa = 0, size = 0;
-    MatrixXd three(3, derivatives[0].cols());
+    RowsXd three(3, derivatives[0].cols());
     for (Eigen::Index k = 0; k < 64; ++k) {
         Matrix3d j;
         for (Eigen::Index a = 0; a < 3; ++a) j.row(a) = of_map[static_cast<std::size_t>(a)].row(k);
@@ -142,8 +142,8 @@ double reach_at_once(const Derivatives& derivatives, const MatrixXd& map, double
 }
 
 // The same by parts of the cell, where the whole one does not reach as far as wanted.
-double cell_reach(const MatrixXd& rows, const MatrixXd& map, double row_norm, double wanted) {
-    MatrixXd bezier = rows;
+double cell_reach(const RowsXd& rows, const MatrixXd& map, double row_norm, double wanted) {
+    RowsXd bezier = rows;
     for (const Eigen::Index axis : {0, 1, 2}) bezier = along_axis(bezier_of_spline(), bezier, axis);
     Derivatives derivatives;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -154,7 +154,7 @@ double cell_reach(const MatrixXd& rows, const MatrixXd& map, double row_norm, do
     double parts = wanted;
     for (int part = 0; part < 8 && parts > whole; ++part) {
         Derivatives on_part = derivatives;
-        for (MatrixXd& some : on_part) {
+        for (RowsXd& some : on_part) {
             for (const Eigen::Index axis : {0, 1, 2}) some = along_axis(half_of_bezier((part >> axis & 1) != 0), some, axis);
         }
         parts = std::min(parts, reach_at_once(on_part, map, row_norm));
@@ -165,30 +165,30 @@ double cell_reach(const MatrixXd& rows, const MatrixXd& map, double row_norm, do
 /// A segment of χ + q, and its halves.
 class SegmentReach {
 public:
-    SegmentReach(const LinkKind::Segment& segment, const MatrixXd& map) : segment_(segment), map_(map) {
-        const auto count = static_cast<Eigen::Index>(segment.kind->weights.size());
+    SegmentReach(const SegmentRules& rules, const MatrixXd& map) : rules_(rules), map_(map) {
+        const auto count = static_cast<Eigen::Index>(rules.kind->weights.size());
         left_.resize(count, 4);
         characteristic_.resize(count, 3);
         for (Eigen::Index k = 0; k < count; ++k) {
             for (Eigen::Index c = 0; c < 4; ++c)
-                left_(k, c) = segment.kind->left[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+                left_(k, c) = rules.kind->left[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
             for (Eigen::Index c = 0; c < 3; ++c) {
-                characteristic_(k, c) = segment.kind->characteristic[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+                characteristic_(k, c) = rules.kind->characteristic[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
             }
         }
     }
 
     // The largest r that can be proved at a depth, as far as `wanted` needs it. rows: to the window, scaled
-    [[nodiscard]] double of(const MatrixXd& rows, double wanted, int depth) const {
+    [[nodiscard]] double of(const RowsXd& rows, double wanted, int depth) const {
         const double whole = at_once(rows);
         if (whole >= wanted || depth == 0) return whole;
         double parts = wanted;
         const double row_norm = norm(rows);
-        for (const auto& ring : segment_.ring) {
+        for (const auto& ring : rules_.ring) {
             parts = std::min(parts, cell_reach(ring * rows, map_, row_norm, parts));
             if (parts <= whole) return whole;
         }
-        for (const MatrixXd& half : segment_.rules.halves) {
+        for (const SparseRowsXd& half : rules_.halves) {
             parts = std::min(parts, of(half * rows, wanted, depth - 1));
             if (parts <= whole) return whole;
         }
@@ -197,8 +197,9 @@ public:
 
 private:
     // By the constants of the edge, for all q with |q| ≤ r.
-    [[nodiscard]] double at_once(const MatrixXd& rows) const {
-        const MatrixXd base = rows * map_, fits = left_.transpose() * rows, fit = left_.transpose() * base;
+    [[nodiscard]] double at_once(const RowsXd& rows) const {
+        const MatrixXd base = rows * map_, fit = left_.transpose() * base;
+        const RowsXd fits = left_.transpose() * rows;
         const Matrix3d a = fit.bottomRows(3);
         if (!(a.determinant() > 1e-9 * a.row(0).norm() * a.row(1).norm() * a.row(2).norm())) return 0;
         const Matrix3d inverse = a.inverse();
@@ -207,24 +208,24 @@ private:
         const double fitted = up(size_of_rows(fits.bottomRows(3)));
         const MatrixXd rest = (base.rowwise() - fit.row(0)) - characteristic_ * a;
         const MatrixXd q = rest * inverse;
-        MatrixXd rests = rows.rowwise() - fits.row(0);
+        RowsXd rests = rows.rowwise() - fits.row(0);
         rests -= characteristic_ * fits.bottomRows(3);
         const VectorXd sizes = rests.cwiseAbs().rowwise().sum();
         constexpr double kRounded = 1e-8;  // of L, χ and all sums, for numbers of the size of some cells
-        const double rounded = kRounded * segment_.kind->spread * height * (1 + base.cwiseAbs().maxCoeff());
+        const double rounded = kRounded * rules_.kind->spread * height * (1 + base.cwiseAbs().maxCoeff());
         const auto passes = [&](double r) {
             const double beta = height * fitted * r + rounded;
             if (!(beta < 0.5)) return false;
             double across = 0, along = 0;
             for (Eigen::Index k = 0; k < q.rows(); ++k) {
-                const double d = segment_.kind->weights[static_cast<std::size_t>(k)];
+                const double d = rules_.kind->weights[static_cast<std::size_t>(k)];
                 const double y12 = std::hypot(q(k, 0), q(k, 1)) + height_across * sizes(k) * r + rounded;
                 const double y3 = std::abs(q(k, 2)) + height_along * sizes(k) * r + rounded;
                 const double mixed = std::hypot(y12, y3) * beta / (1 - beta);
                 across = std::max(across, (y12 + mixed) / d);
                 along = std::max(along, (y3 + mixed) / d);
             }
-            return segment_.kind->across * across + segment_.kind->along * along < 0.999;
+            return rules_.kind->across * across + rules_.kind->along * along < 0.999;
         };
         constexpr double kMost = 0.25;
         constexpr int kTries = 10;
@@ -235,45 +236,10 @@ private:
         return 0;
     }
 
-    const LinkKind::Segment& segment_;
+    const SegmentRules& rules_;
     const MatrixXd& map_;
     MatrixXd left_, characteristic_;
 };
-
-bool is_proved(PolynomialPart part, double error, int levels) {
-    const PartDecision decision = decide(part.derivatives(), error);
-    if (decision.verdict != PartVerdict::Undecided) return decision.verdict == PartVerdict::Proved;
-    if (levels == 0) return false;
-    return std::ranges::all_of(part.children(),
-                               [&](const PolynomialPart& child) { return is_proved(child, error, levels - 1); });
-}
-
-std::vector<Vec3> vectors_of(const MatrixXd& points) {
-    std::vector<Vec3> vectors;
-    for (Eigen::Index k = 0; k < points.rows(); ++k) vectors.emplace_back(points(k, 0), points(k, 1), points(k, 2));
-    return vectors;
-}
-
-// A cell of a spline, from its points in rows.
-bool is_proved_cell(const MatrixXd& points, double error) {
-    std::array<Vec3, 64> spline{};
-    for (std::size_t p = 0; p < 64; ++p) {
-        const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
-        const auto row = points.row(static_cast<Eigen::Index>(p));
-        spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
-    }
-    constexpr int kLevels = 2;
-    return is_proved(PolynomialPart::tricubic(spline, {}), error, kLevels);
-}
-
-bool is_proved_segment(const LinkKind::Segment& segment, const MatrixXd& window, double error, int depth) {
-    if (proves_segment(*segment.kind, vectors_of(window), error)) return true;
-    if (depth == 0) return false;
-    return std::ranges::all_of(segment.ring, [&](const auto& ring) { return is_proved_cell(ring * window, error); }) &&
-           std::ranges::all_of(segment.rules.halves, [&](const MatrixXd& half) {
-               return is_proved_segment(segment, half * window, error, depth - 1);
-           });
-}
 
 constexpr int kDepthOfKinds = 6, kDepthOfData = 2;  // how often segments are halved; data are refined in the mesh, too
 
@@ -288,7 +254,7 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
     kind.characteristic = subspace->map;
     kind.left = subspace->left;
     kind.rates.assign(subspace->rates.begin(), subspace->rates.end());
-    kind.shell = rules.shell;
+    for (const MatrixXd& shell : rules.shell) kind.shell.emplace_back(shell.sparseView());
     kind.weights = VectorXd::Ones(n);
     const PointStar star(link, PointWindow::kReach);
     star.each([&](std::size_t t, const std::array<int, 3>& s) {
@@ -296,14 +262,12 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
         kind.weights(static_cast<Eigen::Index>(star.number(t, s))) = std::max(1.0, square);
     });
     for (const auto& segment : rules.segments) {
-        const EdgeKind& edge = edge_kind(scheme, segment.cells);
-        if (!edge.is_bounded()) return kind;
-        EdgeRules of_edge = edge_rules(scheme, segment.cells);
-        auto ring = whole_ring(of_edge);
-        kind.segments.push_back({&edge, std::move(of_edge), std::move(ring), segment.rows});
+        const SegmentRules& of_segment = segment_rules(scheme, segment.cells);
+        if (!of_segment.kind->is_bounded()) return kind;
+        kind.segments.push_back({&of_segment, segment.rows.sparseView()});
     }
     // The same orientation as the cells.
-    const auto slope_of = [&](const MatrixXd& shell) {
+    const auto slope_of = [&](const SparseRowsXd& shell) {
         const MatrixXd spline = shell * kind.characteristic;
         Matrix3d slope;
         slope << spline.row(37) - spline.row(21), spline.row(25) - spline.row(21), spline.row(22) - spline.row(21);
@@ -354,13 +318,15 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
     // A larger r saves less than it costs to prove: one shell of data for each halving.
     constexpr double kWanted = 0.03;
     double reach = kWanted;
-    for (const MatrixXd& shell : kind.shell) {
-        const MatrixXd rows = shell * kind.weights.asDiagonal();
+    for (const SparseRowsXd& shell : kind.shell) {
+        const RowsXd rows = RowsXd(shell) * kind.weights.asDiagonal();
         reach = std::min(reach, cell_reach(rows, map, norm(rows), reach));
         if (!(reach > 0)) return kind;
     }
     for (const auto& segment : kind.segments) {
-        reach = std::min(reach, SegmentReach(segment, map).of(segment.rows * kind.weights.asDiagonal(), reach, kDepthOfKinds));
+        reach = std::min(
+            reach,
+            SegmentReach(*segment.rules, map).of(RowsXd(segment.rows) * kind.weights.asDiagonal(), reach, kDepthOfKinds));
     }
     constexpr double kLeast = 1e-4;
     kind.reach = reach > kLeast ? kDown * reach : 0;
@@ -410,17 +376,24 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double err
         rests.emplace_back(kind.rest * rests.back() * faster);
     }
     rests.pop_back();
+    // Segments first: where their parts are not proved, no cell has to be tested.
+    const auto near_at = [&](std::size_t level) { return MatrixXd(kind.characteristic + rests[level]); };
+    const auto error_at = [&](std::size_t level) {
+        return 3 * off_at(level) * kind.weights.maxCoeff();  // beyond the boundary three times as much
+    };
+    std::vector<DividedSegment> divided;
     for (std::size_t level = 0; level < rests.size(); ++level) {
-        const MatrixXd near = kind.characteristic + rests[level];
-        const double error_of_near = 3 * off_at(level) * kind.weights.maxCoeff();  // beyond the boundary three times as much
-        for (const MatrixXd& shell : kind.shell) {
-            if (!is_proved_cell(shell * near, error_of_near)) return false;
-        }
         for (const auto& segment : kind.segments) {
-            if (!is_proved_segment(segment, segment.rows * near, error_of_near, kDepthOfData)) return false;
+            const DividedSegment whole{segment.rules, segment.rows * near_at(level), error_at(level)};
+            if (!divide_segment(whole, kDepthOfData, divided)) return false;
         }
     }
-    return true;
+    for (std::size_t level = 0; level < rests.size(); ++level) {
+        for (const SparseRowsXd& shell : kind.shell) {
+            if (!proves_spline_cell(shell * near_at(level), error_at(level))) return false;
+        }
+    }
+    return std::ranges::all_of(divided, proves_ring);
 }
 
 }  // namespace subvol::detail

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "edge_kind.h"
 #include "point_window.h"
+#include "segment_rules.h"
+#include "spline_rows.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {
@@ -31,12 +31,10 @@ namespace subvol::detail {
 
 /// What is known of a kind of irregular points under a scheme: of all points whose cells meet in the same way.
 struct LinkKind {
-    /// An irregular edge at the point, with the rules of its segments.
+    /// A segment of an irregular edge in the shell.
     struct Segment {
-        const EdgeKind* kind = nullptr;
-        EdgeRules rules;
-        std::vector<Eigen::SparseMatrix<double>> ring;
-        Eigen::MatrixXd rows;  ///< from the point's window to that of the segment
+        const SegmentRules* rules = nullptr;
+        SparseRowsXd rows;  ///< from the point's window to that of the segment
     };
     std::vector<double> rates;             ///< the three λ
     double growth = 0;                     ///< W
@@ -45,7 +43,7 @@ struct LinkKind {
     Eigen::MatrixXd characteristic, left;  ///< χ, and L of (1, χ)
     Eigen::VectorXd weights;               ///< d
     Eigen::MatrixXd rest;                  ///< T̄
-    std::vector<Eigen::MatrixXd> shell;
+    std::vector<SparseRowsXd> shell;
     std::vector<Segment> segments;
 
     [[nodiscard]] bool is_bounded() const { return reach > 0; }

@@ -3,9 +3,9 @@
 
 namespace subvol::detail {
 
-Eigen::MatrixXd along_axis(const Eigen::Matrix4d& by, const Eigen::MatrixXd& rows, Eigen::Index axis) {
+RowsXd along_axis(const Eigen::Matrix4d& by, const RowsXd& rows, Eigen::Index axis) {
     const Eigen::Index stride = axis == 0 ? 16 : axis == 1 ? 4 : 1;
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+    RowsXd result = RowsXd::Zero(rows.rows(), rows.cols());
     for (Eigen::Index k = 0; k < 64; ++k) {
         const Eigen::Index at = k / stride % 4;
         for (Eigen::Index i = 0; i < 4; ++i) {

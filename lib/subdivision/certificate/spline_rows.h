@@ -2,13 +2,18 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 
 namespace subvol::detail {
+
+/// Rows over the points of a window, each in one piece of memory.
+using RowsXd = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using SparseRowsXd = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 // Rows for the 4×4×4 points or Bernstein coefficients of a tricubic piece, in the order (4 i + j) 4 + k.
 
 /// Multiplies the index along an axis.
-[[nodiscard]] Eigen::MatrixXd along_axis(const Eigen::Matrix4d& by, const Eigen::MatrixXd& rows, Eigen::Index axis);
+[[nodiscard]] RowsXd along_axis(const Eigen::Matrix4d& by, const RowsXd& rows, Eigen::Index axis);
 
 /// From the points of a uniform cubic spline to its Bézier points.
 [[nodiscard]] Eigen::Matrix4d bezier_of_spline();

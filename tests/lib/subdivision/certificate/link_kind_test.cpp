@@ -260,8 +260,8 @@ TEST(LinkKind, TheWorstDataWithinReachDoNotFold) {
                 for (const auto& segment : kind.segments) {
                     Points window = segment.rows * near;
                     for (int depth = 0; depth < 6; ++depth) {
-                        look(segment.ring[dice() % segment.ring.size()] * window);
-                        window = segment.rules.halves[dice() % 2] * window;
+                        look(segment.rules->ring[dice() % segment.rules->ring.size()] * window);
+                        window = segment.rules->halves[dice() % 2] * window;
                     }
                 }
             };
