@@ -100,6 +100,7 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
             if (!field.unit.empty()) report["fields"].back()["unit"] = field.unit;
+            if (field.missing > 0) report["fields"].back()["missing"] = field.missing;
         }
     }
 

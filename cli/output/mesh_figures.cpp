@@ -159,7 +159,8 @@ void add_fields(const ReadResult& read, Lines& lines) {
         lines.emplace_back(&field == &read.fields.front() ? "fields" : "",
                            text(std::left, std::setw(static_cast<int>(name_width) + 2), field.name, std::setw(15),
                                 "at " + field.location + "s" + kind, "  ", range(field.min, field.max),
-                                field.unit.empty() ? "" : " " + field.unit));
+                                field.unit.empty() ? "" : " " + field.unit,
+                                field.missing == 0 ? "" : text("; ", count_text(field.missing), " lack it")));
     }
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }

@@ -213,20 +213,23 @@ private:
         const FrameRange range = chosen_steps(series, options);
         const CommonOptions all = report.unpack(for_steps(input_, options, range, report.progress()));
         std::vector<ProbedStep> steps;
+        StepsWithFields taken(report);
         for (int step = range.first; step <= range.last; ++step) {
             const auto number = static_cast<std::size_t>(step);
             report.begin_part("step", number - static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count()));
-            const CommonOptions one = of_step(all, step);
-            const BodyInput body = open(one, places, report);
-            ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
-            if (stats_) {
-                found.measure = measure(body, limit.scheme, report);
-            } else if (!patches_.empty()) {
-                found.patches = patches_of(body, limit.scheme, report);
-            } else {
-                found.places = probe(body, places, limit, report);
-            }
+            taken.take(step, [&] {
+                const BodyInput body = open(of_step(all, step), places, report);
+                ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
+                if (stats_) {
+                    found.measure = measure(body, limit.scheme, report);
+                } else if (!patches_.empty()) {
+                    found.patches = patches_of(body, limit.scheme, report);
+                } else {
+                    found.places = probe(body, places, limit, report);
+                }
+            });
         }
+        taken.finish();
         report.begin_part("", 0, 0);
         show_steps(steps, places, output_, common(), report);
     }

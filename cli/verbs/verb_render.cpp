@@ -523,9 +523,16 @@ private:
         ShownField field, colors;
         std::vector<std::optional<ShownBody>> kept(steps.count());  // of each step, as far as memory is given to them
         std::size_t kept_bytes = 0;
+        StepsWithFields taken(report);
+        std::vector<int> there;
+        std::vector<double> times;
         for (int step = steps.first; step <= steps.last; ++step) {
-            ShownBody mesh = load_shown(of_step(all, step), report);
-            const bool first = step == steps.first;
+            std::optional<ShownBody> read;
+            if (!taken.take(step, [&] { read = load_shown(of_step(all, step), report); })) continue;
+            ShownBody& mesh = *read;
+            const bool first = there.empty();
+            there.push_back(step);
+            times.push_back(series.times[static_cast<std::size_t>(step)]);
             field = first ? mesh.field : united(field, mesh.field);
             colors = first ? mesh.colors : united(colors, mesh.colors);
             box.add(mesh.box);
@@ -533,10 +540,15 @@ private:
             kept_bytes += bytes_of(mesh);
             if (kept_bytes <= kMostKept_bytes) kept[static_cast<std::size_t>(step - steps.first)] = std::move(mesh);
         }
+        taken.finish();
         seen.add(box);
         show(box, field, colors, output, report, [&](const ShownColors& shown) {
             std::vector<View> views;
             for (int step = steps.first; step <= steps.last; ++step) {
+                if (std::ranges::find(there, step) == there.end()) {
+                    output.leave_out();
+                    continue;
+                }
                 if (!output.wants_next()) {
                     output.skip();
                     continue;
@@ -556,7 +568,7 @@ private:
             }
         });
         finish(output, report);
-        report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
+        report["times"] = times;
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {

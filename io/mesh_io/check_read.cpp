@@ -16,6 +16,7 @@ namespace {
 void settle_names(ReadResult& result) {
     NamesApart fields("array"), patches("patch"), sets("set of cells");
     for (Attribute& attribute : result.mesh.attributes) attribute.name = fields.take(printable(attribute.name));
+    for (Attribute& attribute : result.incomplete) attribute.name = fields.take(printable(attribute.name));
     for (std::size_t a = 0; a < result.shells.attributes.size(); ++a)
         result.shells.attributes[a].name = result.mesh.attributes.at(a).name;
     for (FieldInfo& field : result.fields) {

@@ -82,7 +82,7 @@ private:
             if (part == deck_.parts.end() && !has_mesh) {
                 if (!instance.part.empty()) fail("there is no part " + in_quotes(instance.part));
                 throw Error(ErrorCode::InvalidInput, "it has no nodes", file_,
-                            "*NODE is needed; AVS UCD files have this ending, too: python3 -m subvol.convert --format avsucd");
+                            "*NODE is needed; AVS UCD files have this ending, too: with the ending .ucd they are read");
             }
             std::vector<const std::map<std::string, InpSet>*> sets;
             if (part != deck_.parts.end()) sets.push_back(&part->second.sets);
