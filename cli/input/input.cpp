@@ -126,6 +126,7 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
 MeshSets sets_in_part(MeshSets sets, std::span<const std::uint8_t> cells) {
     for (Patch& patch : sets.patches) std::erase_if(patch.sides, [&](const CellSide& side) { return cells[side.cell] == 0; });
     for (CellSet& set : sets.sets) std::erase_if(set.cells, [&](Index cell) { return cells[cell] == 0; });
+    for (NodeSet& set : sets.nodes) std::erase_if(set.cells, [&](const CellCorners& at) { return cells[at.cell] == 0; });
     return sets;
 }
 

@@ -135,7 +135,7 @@ public:
         reading.parts_in_whole = !tets.asked();
         if (!patches_.empty() && (tets.asked() || !regions_.empty())) {
             throw Error(ErrorCode::InvalidInput, "patches are those of the limit of hexahedra, of whole cells", "--patch",
-                        "--only block:, set:, fold: or where:, and no scheme of tetrahedra");
+                        "--only block:, set:, nodes:, fold: or where:, and no scheme of tetrahedra");
         }
         if (!flux_.empty()) reading.at_rest.push_back(flux_);
         if (regions_.size() < regions_of(common()).size() && stats_)
@@ -149,7 +149,8 @@ public:
             if (tets.asked()) {
                 if (!regions_.empty()) {
                     throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra",
-                                "--only " + regions_.front().text(), "block:, set:, fold: or where:, which choose whole cells");
+                                "--only " + regions_.front().text(),
+                                "block:, set:, nodes:, fold: or where:, which choose whole cells");
                 }
                 probe_tets(tets, body.mesh_for(tets), places, report);
                 if (stats_ && body.sets.sets.size() > 1) report.warn("tetoct and boxspline measure the whole, not its parts");

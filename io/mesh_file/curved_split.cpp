@@ -231,7 +231,7 @@ private:
         for (const FileArray* array : arrays_) values.emplace_back(points.size() * static_cast<std::size_t>(array->components));
         std::vector<std::uint8_t> filled(points.size());
         FileCells<8> hexes;
-        const bool with_carriers = !found_.patches.empty();
+        const bool with_carriers = !found_.patches.empty() || !found_.node_sets.empty();
         std::vector<std::vector<Index>> carriers(with_carriers ? points.size() : 0);
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const Sizes n = pieces_.of_cell(c);

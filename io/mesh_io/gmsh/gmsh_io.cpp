@@ -455,7 +455,7 @@ private:
     void set_group(std::int64_t dimension, std::int64_t group) {
         if (group_ == std::pair(dimension, group)) return;
         group_ = {dimension, group};
-        const bool one = group > 0 && dimension > 1;
+        const bool one = group > 0;
         cells_.set_groups(one ? std::vector<std::string>{groups_.name_of(dimension, group)} : std::vector<std::string>{});
     }
 

@@ -477,6 +477,12 @@ private:
             }
             cells_of[set.name] = taken.numbers.size();
         }
+        for (const FileSet& set : deck.found.node_sets) {
+            FileSet& taken = found_.node_sets.emplace_back(FileSet{set.name, {}});
+            for (const Index point : set.numbers) {
+                if (node_at(point) != kNone) taken.numbers.push_back(node_at(point));
+            }
+        }
         for (MeshBlock block : deck.found.blocks) {
             block.cells = cells_of[block.name];
             if (block.cells > 0) found_.blocks.push_back(block);

@@ -255,12 +255,16 @@ private:
             for (std::size_t e = 0; e < block.size; ++e) set.numbers.push_back(static_cast<Index>(block.first + e));
         }
         // What names parts of the mesh stops nothing but itself where it cannot be read.
-        try {
-            read_side_sets();
-            read_element_sets();
-        } catch (const Error& error) {
-            found_.warnings.push_back("side sets or element sets ignored: " + error.message());
-        }
+        const auto read_or_ignore = [&](const std::string& what, const auto& read) {
+            try {
+                read();
+            } catch (const Error& error) {
+                found_.warnings.push_back(what + " ignored: " + error.message());
+            }
+        };
+        read_or_ignore("side sets", [&] { read_side_sets(); });
+        read_or_ignore("node sets", [&] { read_node_sets(); });
+        read_or_ignore("element sets", [&] { read_element_sets(); });
         read_variables();
         const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
         if (others > 0) left_out_[kNfaced] += others;
@@ -473,6 +477,23 @@ private:
                 patch.add(corners);
             }
             found_.patches.push_back(std::move(patch));
+        }
+    }
+
+    void read_node_sets() {
+        const std::size_t count = exodus_.dimension("num_node_sets");
+        const auto names = names_of_sets(count, "ns", "node set");
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::string variable = "node_ns" + std::to_string(k + 1);
+            const std::size_t size = exodus_.dimension("num_nod_ns" + std::to_string(k + 1));
+            if (size == 0) continue;
+            FileSet set{names[k], {}};
+            for (const std::int64_t node : exodus_.integers(variable, size)) {
+                if (node < 1 || static_cast<std::uint64_t>(node) > found_.points.size())
+                    exodus_.fail(variable + ": there is no node " + std::to_string(node));
+                set.numbers.push_back(static_cast<Index>(node - 1));
+            }
+            found_.node_sets.push_back(std::move(set));
         }
     }
 
