@@ -7,7 +7,7 @@ import shutil
 import unittest
 
 from command import InFolder, subvol
-from patches_test import write_foam
+from patches_test import CELLS, POINTS, netcdf, write_foam
 
 # A bar of three unit cubes along z, and the nodes in the middle of their edges.
 CORNERS = [(x, y, z) for z in range(4) for y in range(2) for x in range(2)]
@@ -126,6 +126,32 @@ class MissingNodesTest(InFolder):
         done = subvol("render", "a.frd", "-o", "a.png", "--field", "S", folder=self.folder)
         self.assertEqual(done.code, 2)
         self.assertIn("no cell has 'S' at all of its points", done.err)
+
+
+class MissingBlocksTest(InFolder):
+    def test_a_variable_of_one_block_is_that_of_its_cells(self):
+        """As MOOSE restricts variables to blocks: of three cubes the last two have it."""
+        blocks = CELLS[:1], CELLS[1:]
+        (self.folder / "a.exo").write_bytes(netcdf(
+            {"num_dim": 3, "num_nodes": len(POINTS), "num_elem": 3, "num_el_blk": 2, "num_el_in_blk1": 1, "num_el_in_blk2": 2,
+             "num_nod_per_el1": 8, "num_nod_per_el2": 8, "time_step": 1, "num_elem_var": 3, "len": 8},
+            [("coord" + "xyz"[a], ["num_nodes"], "d", [p[a] for p in POINTS]) for a in range(3)] +
+            [(f"connect{b + 1}", [f"num_el_in_blk{b + 1}", f"num_nod_per_el{b + 1}"], "i", [n + 1 for cell in cells for n in cell])
+             for b, cells in enumerate(blocks)] +
+            [("time_whole", ["time_step"], "d", [1.5]),
+             ("name_elem_var", ["num_elem_var", "len"], "c", b"".join(n.ljust(8, b"\0") for n in (b"flux", b"all", b"none"))),
+             ("vals_elem_var1eb2", ["time_step", "num_el_in_blk2"], "d", [3, 5]),
+             ("vals_elem_var2eb1", ["time_step", "num_el_in_blk1"], "d", [1]),
+             ("vals_elem_var2eb2", ["time_step", "num_el_in_blk2"], "d", [3, 5])]))
+        done = self.run_ok("info", "a.exo", "--json").json()
+        self.assertEqual({f["name"]: (f["min"], f["max"], f.get("missing")) for f in done["fields"]},
+                         {"flux": (3, 5, 1), "all": (1, 5, None)})
+        self.assertIn('array "none" is not in the blocks that are read', " ".join(done["warnings"]))
+        for more, mean in ([], 4), (["--cell-values", "constant"], 4):
+            done = self.run_ok("probe", "a.exo", "--stats", "--field", "flux", "--scheme", "linear", "--json", *more).json()
+            self.assertEqual(done["cells_with_field"], 2)
+            self.assertAlmostEqual(done["stats"]["whole"]["volume"], 2, delta=1e-9)
+            self.assertAlmostEqual(done["stats"]["whole"]["fields"][0]["mean"], mean, delta=1e-9)
 
 
 class MissingStepsTest(InFolder):

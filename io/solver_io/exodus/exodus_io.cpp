@@ -220,7 +220,11 @@ std::vector<Variable> with_components(const std::vector<std::string>& names) {
 class ExodusReader {
 public:
     ExodusReader(std::string_view bytes, std::string_view file, const ReadOptions& options)
-        : in_(std::string_view(), file, TextScanner::Comments::None), file_(file), options_(options), exodus_(bytes, file) {
+        : in_(std::string_view(), file, TextScanner::Comments::None),
+          file_(file),
+          options_(options),
+          exodus_(bytes, file),
+          bytes_(bytes.size()) {
         in_.name_no_place();
     }
 
@@ -541,7 +545,8 @@ private:
             const std::size_t number = variable.numbers[c];
             const auto values = at_cells ? element_values(number) : node_values(number);
             if (values.empty()) {
-                found_.warnings.push_back("array " + in_quotes(variable.name) + " is not in every block: ignored");
+                found_.warnings.push_back("array " + in_quotes(variable.name) +
+                                          " is not in the blocks that are read, or in too few: ignored");
                 return;
             }
             for (std::size_t i = 0; i < values.size(); ++i) array.values[i * components + c] = values[i];
@@ -556,18 +561,22 @@ private:
         return exodus_.reals("vals_nod_var", {step_, variable - 1}, nodes);  // as in the first versions
     }
 
-    // One value for each element of the file: NaN where a block that is left out has none. Empty if a block that is taken has
-    // none.
-    [[nodiscard]] std::vector<double> element_values(std::size_t variable) const {
+    // One value for each element of the file: NaN where a block has none. Empty if no block that is taken has one, or if too
+    // many are missing for a file of this size.
+    [[nodiscard]] std::vector<double> element_values(std::size_t variable) {
         std::vector<double> values(elements_, std::numeric_limits<double>::quiet_NaN());
+        bool any = false;
         for (const Block& block : blocks_) {
             const std::string name = "vals_elem_var" + std::to_string(variable) + "eb" + std::to_string(block.number);
-            const bool has = exodus_.has(name);
-            if (!has && block.taken) return {};
-            if (!has) continue;
+            if (!exodus_.has(name)) {
+                if (block.taken) missing_ += block.size;
+                continue;
+            }
+            any = any || block.taken;
             const auto of_block = exodus_.reals(name, {step_}, block.size);
             std::copy(of_block.begin(), of_block.end(), values.begin() + static_cast<std::ptrdiff_t>(block.first));
         }
+        if (!any || missing_ > std::max(kFewMissing, bytes_)) return {};
         return values;
     }
 
@@ -575,10 +584,14 @@ private:
     std::string_view file_;
     ReadOptions options_;
     ExodusFile exodus_;
+    std::size_t bytes_;
     MeshFile found_;
     std::vector<Block> blocks_;
     std::size_t elements_ = 0;
+    static constexpr std::size_t kFewMissing = std::size_t{1} << 20;
+
     std::size_t curved_ = 0;
+    std::size_t missing_ = 0;  // values that blocks lack
     std::size_t step_ = 0;
     std::map<std::string, std::size_t> left_out_;
     CellFaces faces_;  // of the blocks of faces, read when the first polyhedra are
