@@ -33,7 +33,7 @@ std::vector<Option> options_of_cells(CommonOptions& options) {
         Option("only", options.only)
             .help("REGION",
                   "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, "
-                  "set:NAME, fold:VERDICT or where:EXPR (repeatable: in all of them)"),
+                  "set:NAME, nodes:NAME, fold:VERDICT or where:EXPR (repeatable: in all of them)"),
         Option("clamp-file", options.clamp_file)
             .help("keep the fields between the points within the range that they have in the file, of cells in that of the "
                   "cells; --clamp file is the same")};

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <iomanip>
 #include <iostream>
 #include <variant>
@@ -110,6 +111,32 @@ struct JsonOf {
     }
 };
 
+/// A sentence without its numbers: what is left is the same at all steps of a series. Digits in names and in quotes stay.
+std::string without_numbers(const std::string& sentence) {
+    std::string result;
+    bool in_word = false, quoted = false;
+    for (std::size_t i = 0; i < sentence.size(); ++i) {
+        const auto c = static_cast<unsigned char>(sentence[i]);
+        if (c == '"') quoted = !quoted;
+        std::size_t end = i;
+        const auto in_number = [&](char d) { return std::isdigit(static_cast<unsigned char>(d)) != 0 || d == '.' || d == ','; };
+        if (!in_word && !quoted && std::isdigit(c) != 0) {
+            while (end + 1 < sentence.size() && in_number(sentence[end + 1])) ++end;
+            if (sentence.compare(end + 1, 2, "e-") == 0 || sentence.compare(end + 1, 2, "e+") == 0) {
+                end += 2;
+                while (end + 1 < sentence.size() && in_number(sentence[end + 1])) ++end;
+            }
+            while (end > i && !std::isdigit(static_cast<unsigned char>(sentence[end]))) --end;  // a comma or stop after it
+            result += '#';
+            i = end;
+            continue;
+        }
+        in_word = std::isalnum(c) != 0 || c == '_' || c >= 128;
+        result += sentence[i];
+    }
+    return result;
+}
+
 }  // namespace
 
 Json json_of(const Facts& facts) {
@@ -133,6 +160,10 @@ void Report::warn(const std::string& text) {
     if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // already reported, for another frame
     warnings.push_back(warning);
     if (print_json_ || quiet_) return;
+    if (!said_.insert(without_numbers(warning)).second && series_) {
+        ++repeated_;
+        return;
+    }
     progress_.clear();
     std::cerr << "subvol: warning: " << warning << '\n';
 }
@@ -154,8 +185,18 @@ void Report::merge(const Facts& facts) {
 
 void Report::note(const std::string& note) {
     if (note.empty() || print_json_ || quiet_) return;
+    if (!said_.insert(without_numbers(note)).second && series_) return;
     progress_.clear();
     std::cerr << "subvol: note: " << detail::printable_message(note) << '\n';
+}
+
+void Report::end_series() {
+    series_ = false;
+    if (repeated_ == 0) return;
+    progress_.clear();
+    std::cerr << "subvol: note: " << counted(repeated_, "more warning") << " of other steps "
+              << (repeated_ == 1 ? "differs" : "differ") << " from these in numbers alone; --json has all\n";
+    repeated_ = 0;
 }
 
 void Report::add_seconds(const std::string& stage, double seconds) {

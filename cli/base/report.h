@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -46,6 +47,11 @@ public:
 
     /// For people on standard error; not printed with --json or --quiet. An empty text is ignored.
     void note(const std::string& note);
+    /// Until `end_series`, sentences that differ from earlier ones in numbers alone are not printed again, as those of the
+    /// steps of a series; the JSON has all warnings.
+    void begin_series() { series_ = true; }
+    /// Prints how many warnings were not printed.
+    void end_series();
 
     /// A line for people; not printed with --json or --quiet.
     void say(const std::string& line);
@@ -89,6 +95,9 @@ private:
     bool print_json_;
     bool quiet_;
     bool all_said_ = false;
+    bool series_ = false;
+    std::size_t repeated_ = 0;    // warnings that were not printed
+    std::set<std::string> said_;  // sentences without their numbers
     Json json_ = Json::object();
     TerminalProgress progress_;
 };

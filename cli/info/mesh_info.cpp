@@ -100,6 +100,7 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
             if (!field.unit.empty()) report["fields"].back()["unit"] = field.unit;
+            if (field.missing > 0) report["fields"].back()["missing"] = field.missing;
         }
     }
 
@@ -143,6 +144,9 @@ private:
         report["sets"] = Json::array();
         for (const CellSet& set : read.sets.sets)
             report["sets"].push_back({{"name", set.name}, {"cells", set.cells.size()}, {"volume", volume_of(read.mesh, set)}});
+        report["node_sets"] = Json::array();
+        for (const NodeSet& set : read.sets.nodes)
+            report["node_sets"].push_back({{"name", set.name}, {"nodes", points_of(read.mesh, set).size()}});
     }
 
     /// "0 to 4, times 0 … 0.4; this is step 4"; empty if there is one step.

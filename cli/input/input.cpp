@@ -19,6 +19,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "field_gaps.h"
 #include "grid_input.h"
 #include "limit_warning.h"
 #include "options.h"
@@ -125,6 +126,7 @@ ReadResult read_between(const std::string& input, const BetweenSteps& between, d
 MeshSets sets_in_part(MeshSets sets, std::span<const std::uint8_t> cells) {
     for (Patch& patch : sets.patches) std::erase_if(patch.sides, [&](const CellSide& side) { return cells[side.cell] == 0; });
     for (CellSet& set : sets.sets) std::erase_if(set.cells, [&](Index cell) { return cells[cell] == 0; });
+    for (NodeSet& set : sets.nodes) std::erase_if(set.cells, [&](const CellCorners& at) { return cells[at.cell] == 0; });
     return sets;
 }
 
@@ -326,10 +328,8 @@ WithFacts<ReadResult> read_input(const std::string& input, const CommonOptions& 
         return read_between(input, *between, *options.read.time, file_options, facts);
     });
     for (const std::string& warning : read.warnings) facts.warn(warning);
-    for (const UnreadField& field : read.unread) {
-        if (options.field == field.name)
-            throw Error(ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'"));
-    }
+    refuse_unread(read, input, options);
+    facts.merge(take_incomplete(read, input, options));
     say_step(read, facts);
     if (read.sharp_edges) {
         const std::size_t edges = read.sharp_edges->edges;
@@ -384,11 +384,6 @@ WithFacts<HexMesh> load_mesh(const std::string& input, const CommonOptions& opti
 
 WithFacts<HexMesh> mesh_of(ReadResult read, const CommonOptions& options, Shells* shells) {
     Facts facts;
-    if (read.mesh.attributes.empty() && !read.unread.empty() && !options.density && !read.mesh.cells.empty()) {
-        const UnreadField& first = read.unread.front();
-        throw Error(ErrorCode::InvalidInput, text("none of its fields can be read; '", first.name, "': ", first.why), {},
-                    "--density makes a field");
-    }
     if (shells != nullptr) {
         *shells = with_density(std::move(read.shells), options);
     } else {
@@ -470,8 +465,15 @@ HexMesh with_written_field(HexMesh mesh, const CommonOptions& options) {
 
 WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& options, const std::optional<std::string>& second) {
     Facts facts;
-    SelectedField selected =
-        select_field(mesh, options.density ? std::optional<std::string>("density") : options.field, options.listener);
+    const auto select = [&](const std::optional<std::string>& name) {
+        try {
+            return select_field(mesh, name, options.listener);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::InvalidInput) throw;
+            throw NoSuchField(error);
+        }
+    };
+    SelectedField selected = select(options.density ? std::optional<std::string>("density") : options.field);
     facts.warn(selected.warning);
     facts["field"] = selected.scalar.name;
     if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
@@ -479,7 +481,7 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
                         " fields; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
-    if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second, options.listener).scalar);
+    if (second && *second != chosen.front().name) chosen.push_back(select(second).scalar);
     mesh.attributes = std::move(chosen);
     if (options.clamp_file) bound_as_given(mesh);
     return {std::move(mesh), std::move(facts)};

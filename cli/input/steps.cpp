@@ -109,6 +109,19 @@ WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions
     return result;
 }
 
+void StepsWithFields::finish() {
+    report_.end_series();
+    if (lacking_.empty()) return;
+    if (!any_) throw Error(*why_);
+    std::string list;
+    for (std::size_t k = 0; k < lacking_.size(); ++k) {
+        const std::size_t first = k;
+        while (k + 1 < lacking_.size() && lacking_[k + 1] == lacking_[k] + 1) ++k;
+        list += text(first == 0 ? "" : ", ", lacking_[first], first == k ? "" : text(" to ", lacking_[k]));
+    }
+    report_.warn(text(lacking_.size() == 1 ? "step " : "steps ", list, " left out: ", why_->what()));
+}
+
 std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options) {
     if (!options.interpolate_time || !options.read.time) return std::nullopt;
     const MeshSeries series = open_series(input);

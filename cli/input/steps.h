@@ -3,9 +3,12 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common_options.h"
+#include "field_gaps.h"
 #include "mesh_frames.h"
+#include "report.h"
 #include "subvol/facts.h"
 #include "subvol/mesh_series.h"
 
@@ -39,6 +42,37 @@ void say_step(const ReadResult& read, Facts& facts);
 /// throws: Error(InvalidInput) if nothing moves in any step
 [[nodiscard]] WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions& options,
                                                  const FrameRange& range, Progress* progress);
+
+/// What is done for one step after the other. Steps that lack a field that is asked for are left out, and what is said of each
+/// step is printed once.
+class StepsWithFields {
+public:
+    explicit StepsWithFields(Report& report) : report_(report) { report.begin_series(); }
+
+    /// Calls call() for a step. Returns whether the step has the fields.
+    template <class Call>
+    bool take(int step, const Call& call) {
+        try {
+            call();
+        } catch (const NoSuchField& error) {
+            if (lacking_.empty()) why_ = error;
+            lacking_.push_back(step);
+            return false;
+        }
+        any_ = true;
+        return true;
+    }
+    /// After the last step: warns of those that were left out.
+    ///
+    /// throws: Error(InvalidInput) as the first of them, if no step was taken
+    void finish();
+
+private:
+    Report& report_;
+    std::vector<int> lacking_;
+    std::optional<Error> why_;  // of the first of them
+    bool any_ = false;
+};
 
 /// The steps before and after --time, and how far it lies between them, from 0 to 1. Nothing without --interpolate-time, and
 /// at a step or beyond the first and the last one.

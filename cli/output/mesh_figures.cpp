@@ -159,7 +159,8 @@ void add_fields(const ReadResult& read, Lines& lines) {
         lines.emplace_back(&field == &read.fields.front() ? "fields" : "",
                            text(std::left, std::setw(static_cast<int>(name_width) + 2), field.name, std::setw(15),
                                 "at " + field.location + "s" + kind, "  ", range(field.min, field.max),
-                                field.unit.empty() ? "" : " " + field.unit));
+                                field.unit.empty() ? "" : " " + field.unit,
+                                field.missing == 0 ? "" : text("; ", count_text(field.missing), " lack it")));
     }
     if (read.fields.empty()) lines.emplace_back("fields", "none");
 }
@@ -186,10 +187,11 @@ private:
 
 /// Blocks, patches, and sets of cells that are not blocks.
 void add_parts(const ReadResult& read, Lines& lines) {
-    PartNames blocks, patches, sets;
+    PartNames blocks, patches, sets, nodes;
     std::set<std::string_view> known;
     for (const MeshBlock& block : read.blocks) known.insert(block.name);
     for (const Patch& patch : read.sets.patches) patches.add(patch.name, patch.sides.size());
+    for (const NodeSet& set : read.sets.nodes) nodes.add(set.name, points_of(read.mesh, set).size());
     for (const CellSet& set : read.sets.sets) {
         PartNames& names = known.contains(set.name) ? blocks : sets;
         if (&names == &sets || read.blocks.size() > 1) names.add(set.name, set.cells.size(), volume_of(read.mesh, set));
@@ -197,6 +199,7 @@ void add_parts(const ReadResult& read, Lines& lines) {
     blocks.add_to(lines, "blocks");
     patches.add_to(lines, "patches");
     sets.add_to(lines, "sets");
+    nodes.add_to(lines, "nodes");
 }
 
 }  // namespace

@@ -176,20 +176,24 @@ Facts PictureOutput::finish(Progress* progress) {
     if (silent_) return facts;
     if (!share_) warn_if_empty(opacity_, facts);
     if (share_) facts["part"] = share_->name();
-    facts["output"] = frame_path(0).string();
+    std::size_t first = 0;
+    while (left_out_.contains(first)) ++first;
+    facts["output"] = frame_path(first).string();
     if (cameras_.size() == 1) {
         facts["camera"] = cameras_.front();
     } else if (!cameras_.empty()) {
         facts["cameras"] = cameras_;
     }
     if (!frames_) return facts;
-    facts["frames"] = *frames_;
+    facts["frames"] = static_cast<std::size_t>(*frames_) - left_out_.size();
     if (video_) {
         facts.timed(progress, "write", [&] { video_->finish(); });
     } else {
         const auto [begin, end] = share_.value_or(Share{}).range(static_cast<std::size_t>(*frames_));
         FactValue::List outputs;
-        for (std::size_t i = begin; i < std::min(end, written_); ++i) outputs.emplace_back(frame_path(i).string());
+        for (std::size_t i = begin; i < std::min(end, written_); ++i) {
+            if (!left_out_.contains(i)) outputs.emplace_back(frame_path(i).string());
+        }
         facts["outputs"] = outputs;
     }
     return facts;

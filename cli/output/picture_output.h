@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ public:
     [[nodiscard]] bool wants_next() const;
     /// Passes over the next frame.
     void skip() { ++written_; }
+    /// Passes over the next frame, of which there is no picture.
+    void leave_out() { left_out_.insert(written_++); }
 
     /// What is drawn over every picture from now on.
     void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
@@ -69,6 +72,7 @@ private:
     bool transparent_;
     PictureNotes notes_{};
     std::size_t written_ = 0;
+    std::set<std::size_t> left_out_{};
     FactValue::List cameras_{};  // of what was drawn
     float opacity_ = 0;          // the largest of a pixel
     std::optional<Share> share_;

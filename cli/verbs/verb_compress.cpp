@@ -168,6 +168,10 @@ private:
         const auto read = [&](const CommonOptions& one) {
             ReadResult found = report.unpack(read_input(input_, one, nullptr, ShellsAlone::Refuse));
             sets = std::move(found.sets);
+            if (!sets.nodes.empty()) {
+                report.warn(list_of({{}, {}, std::move(sets.nodes)}) + " not written: .svw files do not have them");
+                sets.nodes.clear();
+            }
             HexMesh mesh = report.unpack(mesh_of(std::move(found), one, nullptr));
             return one.field || one.density ? report.unpack(with_selected_field(std::move(mesh), one)) : mesh;
         };

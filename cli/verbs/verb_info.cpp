@@ -38,7 +38,8 @@ public:
                "  subvol info --gl\n"
                "\n"
                "JSON: blocks and sets, each with name, cells (those that it consists of after the splitting; blocks also "
-               "elements, as the file counts them) and volume, as of the whole. With --folds: folds, with verdict, cells "
+               "elements, as the file counts them) and volume, as of the whole; node_sets with name and nodes. With --folds: "
+               "folds, with verdict, cells "
                "{proved, folded, undecided, irregular} and open_volume, as of "
                "check.") {
         add_input(app(), "FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));

@@ -177,9 +177,12 @@ private:
             const MeshSeries series = open_series(input_);
             const FrameRange range = chosen_steps(series, common());
             const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
+            StepsWithFields taken(report);
             for (int step = range.first; step <= range.last; ++step) {
-                add(of_step(all, step), text(step, " (t = ", series.times[static_cast<std::size_t>(step)], ")"));
+                const std::string name = text(step, " (t = ", series.times[static_cast<std::size_t>(step)], ")");
+                taken.take(step, [&] { add(of_step(all, step), name); });
             }
+            taken.finish();
         } else {
             add(common(), "");
         }

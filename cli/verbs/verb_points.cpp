@@ -180,14 +180,19 @@ private:
         const CommonOptions all = report.unpack(for_steps(input_, common(), steps, report.progress()));
         if (share_.given()) report["part"] = share.name();
         report["frames"] = Json::array();
+        StepsWithFields taken(report);
         for (int step = range.first; step <= range.last; ++step) {
             const std::string path = with_number(output_, step);
-            report.merge(write_kernels(path, points_of_mesh(of_step(all, step), report), written_, report.progress()));
+            const bool there = taken.take(step, [&] {
+                report.merge(write_kernels(path, points_of_mesh(of_step(all, step), report), written_, report.progress()));
+            });
+            if (!there) continue;
             report["frames"].push_back({{"frame", step},
                                         {"time", series.times[static_cast<std::size_t>(step)]},
                                         {"points", report["points"]},
                                         {"output", path}});
         }
+        taken.finish();
         if (ranks() != nullptr) report["frames"] = ranks()->gather_list(report["frames"]);
         report["input"] = input_;
         report["output"] = output_;

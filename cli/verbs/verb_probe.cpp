@@ -135,7 +135,7 @@ public:
         reading.parts_in_whole = !tets.asked();
         if (!patches_.empty() && (tets.asked() || !regions_.empty())) {
             throw Error(ErrorCode::InvalidInput, "patches are those of the limit of hexahedra, of whole cells", "--patch",
-                        "--only block:, set:, fold: or where:, and no scheme of tetrahedra");
+                        "--only block:, set:, nodes:, fold: or where:, and no scheme of tetrahedra");
         }
         if (!flux_.empty()) reading.at_rest.push_back(flux_);
         if (regions_.size() < regions_of(common()).size() && stats_)
@@ -149,7 +149,8 @@ public:
             if (tets.asked()) {
                 if (!regions_.empty()) {
                     throw Error(ErrorCode::InvalidInput, "is cut from the limit of hexahedra",
-                                "--only " + regions_.front().text(), "block:, set:, fold: or where:, which choose whole cells");
+                                "--only " + regions_.front().text(),
+                                "block:, set:, nodes:, fold: or where:, which choose whole cells");
                 }
                 probe_tets(tets, body.mesh_for(tets), places, report);
                 if (stats_ && body.sets.sets.size() > 1) report.warn("tetoct and boxspline measure the whole, not its parts");
@@ -213,20 +214,23 @@ private:
         const FrameRange range = chosen_steps(series, options);
         const CommonOptions all = report.unpack(for_steps(input_, options, range, report.progress()));
         std::vector<ProbedStep> steps;
+        StepsWithFields taken(report);
         for (int step = range.first; step <= range.last; ++step) {
             const auto number = static_cast<std::size_t>(step);
             report.begin_part("step", number - static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count()));
-            const CommonOptions one = of_step(all, step);
-            const BodyInput body = open(one, places, report);
-            ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
-            if (stats_) {
-                found.measure = measure(body, limit.scheme, report);
-            } else if (!patches_.empty()) {
-                found.patches = patches_of(body, limit.scheme, report);
-            } else {
-                found.places = probe(body, places, limit, report);
-            }
+            taken.take(step, [&] {
+                const BodyInput body = open(of_step(all, step), places, report);
+                ProbedStep& found = steps.emplace_back(ProbedStep{number, series.times[number], {}, {}});
+                if (stats_) {
+                    found.measure = measure(body, limit.scheme, report);
+                } else if (!patches_.empty()) {
+                    found.patches = patches_of(body, limit.scheme, report);
+                } else {
+                    found.places = probe(body, places, limit, report);
+                }
+            });
         }
+        taken.finish();
         report.begin_part("", 0, 0);
         show_steps(steps, places, output_, common(), report);
     }

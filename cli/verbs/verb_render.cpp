@@ -233,7 +233,9 @@ public:
         arguments_.add_to(app());
         streams_.add_to(app());
         add_patches(
-            "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME (repeatable; "
+            "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME, or the faces "
+            "between "
+            "those of nodes, nodes:NAME (repeatable; "
             "all); "
             "coloured by patch, or by --field");
         add_part_opacities(
@@ -523,9 +525,16 @@ private:
         ShownField field, colors;
         std::vector<std::optional<ShownBody>> kept(steps.count());  // of each step, as far as memory is given to them
         std::size_t kept_bytes = 0;
+        StepsWithFields taken(report);
+        std::vector<int> there;
+        std::vector<double> times;
         for (int step = steps.first; step <= steps.last; ++step) {
-            ShownBody mesh = load_shown(of_step(all, step), report);
-            const bool first = step == steps.first;
+            std::optional<ShownBody> read;
+            if (!taken.take(step, [&] { read = load_shown(of_step(all, step), report); })) continue;
+            ShownBody& mesh = *read;
+            const bool first = there.empty();
+            there.push_back(step);
+            times.push_back(series.times[static_cast<std::size_t>(step)]);
             field = first ? mesh.field : united(field, mesh.field);
             colors = first ? mesh.colors : united(colors, mesh.colors);
             box.add(mesh.box);
@@ -533,10 +542,15 @@ private:
             kept_bytes += bytes_of(mesh);
             if (kept_bytes <= kMostKept_bytes) kept[static_cast<std::size_t>(step - steps.first)] = std::move(mesh);
         }
+        taken.finish();
         seen.add(box);
         show(box, field, colors, output, report, [&](const ShownColors& shown) {
             std::vector<View> views;
             for (int step = steps.first; step <= steps.last; ++step) {
+                if (std::ranges::find(there, step) == there.end()) {
+                    output.leave_out();
+                    continue;
+                }
                 if (!output.wants_next()) {
                     output.skip();
                     continue;
@@ -556,7 +570,7 @@ private:
             }
         });
         finish(output, report);
-        report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
+        report["times"] = times;
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {

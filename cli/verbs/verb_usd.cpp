@@ -118,8 +118,12 @@ private:
             const MeshSeries series = open_series(inputs_[0]);
             const FrameRange range = chosen_steps(series, common());
             const CommonOptions all = report.unpack(for_steps(inputs_[0], common(), range, report.progress()));
-            for (int step = range.first; step <= range.last; ++step)
-                write_mesh_grid(of_step(all, step), with_number(base + "_####.vdb", step), step, report);
+            StepsWithFields taken(report);
+            for (int step = range.first; step <= range.last; ++step) {
+                const std::string file = with_number(base + "_####.vdb", step);
+                taken.take(step, [&] { write_mesh_grid(of_step(all, step), file, step, report); });
+            }
+            taken.finish();
         }
         report["input"] = inputs_[0];
         write_volume(report);

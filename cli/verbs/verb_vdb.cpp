@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
 #include "bricks_input.h"
 #include "choices.h"
@@ -288,17 +289,25 @@ private:
         if (output_.memory_bytes > 0)
             throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         if (share_.given()) report["part"] = frames.share.name();
-        FrameWriter writer(maker, frames, asked_, output_, report.progress());
+        StepsWithFields taken(report);
+        FramesToGrids there = frames;  // from the first that has the fields: the grids are set up for it
+        while (there.all.first < there.all.last &&
+               !taken.take(there.all.first, [&] { std::ignore = frames.frames.mesh(there.all.first); }))
+            ++there.all.first;
+        FrameWriter writer(maker, there, asked_, output_, report.progress());
         report.merge(writer.facts());
         report["frames"] = Json::array();
         const FrameRange range = frames_of(frames.share, frames.all);
-        for (int frame = range.first; frame <= range.last; ++frame) {
+        for (int frame = std::max(range.first, there.all.first); frame <= range.last; ++frame) {
             const int number = frame - range.first;
             report.begin_part(text("frame ", number + 1, " of ", range.count()), static_cast<std::size_t>(number),
                               static_cast<std::size_t>(range.count()));
-            const Facts entry = report.unpack(writer.write(frame));  // may move the list
-            report["frames"].push_back(json_of(entry));
+            taken.take(frame, [&] {
+                const Facts entry = report.unpack(writer.write(frame));  // may move the list
+                report["frames"].push_back(json_of(entry));
+            });
         }
+        taken.finish();
         if (ranks() != nullptr) report["frames"] = ranks()->gather_list(report["frames"]);
         report["input"] = input_;
         report["output"] = output_.path;

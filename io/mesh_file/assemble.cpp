@@ -16,8 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -57,14 +59,19 @@ void warn_of_folded(ReadResult& result) {
 }
 
 // The mean at each point over its cells, weighted by volume; where all of them have no volume, the plain mean. Splitting may
-// make folded cells, whose signed volume is negative: their size counts, so that the mean stays between the values.
+// make folded cells, whose signed volume is negative: their size counts, so that the mean stays between the values. Cells
+// without a value do not count; NaN at points that have no other cells.
 std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<double>& values, std::size_t components) {
     std::vector<double> sums(mesh.points.size() * components);
     std::vector<double> plain_sums(sums.size());
     std::vector<double> weights(mesh.points.size());
     std::vector<double> counts(mesh.points.size());
+    std::vector<std::uint8_t> in_cell(mesh.points.size());
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (const Index p : mesh.cells[c]) in_cell[p] = 1;
         const double volume = std::abs(cell_volume(corners_of(mesh, mesh.cells[c])));
+        const auto tuple = std::span(values).subspan(c * components, components);
+        if (!std::ranges::all_of(tuple, [](double value) { return std::isfinite(value); })) continue;
         for (const Index p : mesh.cells[c]) {
             weights[p] += volume;
             counts[p] += 1;
@@ -76,7 +83,10 @@ std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<doubl
     }
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const std::size_t p = i / components;
-        if (counts[p] == 0) continue;
+        if (counts[p] == 0) {
+            if (in_cell[p] != 0) sums[i] = std::numeric_limits<double>::quiet_NaN();
+            continue;
+        }
         sums[i] = weights[p] > 0 ? sums[i] / weights[p] : plain_sums[i] / counts[p];
     }
     return sums;
@@ -127,17 +137,17 @@ FieldInfo describe(const FileArray& array, const Origin& origin) {
 
 class ArrayConversion {
 public:
-    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names,
-                    CellValues cell_values)
-        : result_(result), origin_(origin), file_(file), names_(names), cell_values_(cell_values) {}
+    ArrayConversion(ReadResult& result, const Origin& origin, const EntityNames& names, CellValues cell_values)
+        : result_(result), origin_(origin), names_(names), cell_values_(cell_values) {}
 
-    void take(FileArray&& array) {
+    /// Returns whether the mesh has got the array as its next attribute.
+    bool take(FileArray&& array) {
         // The names of all formats pass here: they appear in messages, JSON and files, and users write them to choose the
         // field.
         array.name = array.name.empty() ? "unnamed" : printable(array.name);
         if (const std::string place = array.at_cells ? gap_at_cells(array) : gap_at_points(array); !place.empty()) {
-            unread_.push_back({array.name, "the value at " + place + " is not finite"});
-            return;
+            if (!take_incomplete(array)) unread_.push_back({array.name, "the value at " + place + " is not finite"});
+            return false;
         }
         result_.fields.push_back(describe(array, origin_));
         const FieldInfo& info = result_.fields.back();
@@ -155,11 +165,11 @@ public:
             attribute.values = from_points(std::move(array));
         }
         result_.mesh.attributes.push_back(std::move(attribute));
+        return true;
     }
 
-    /// After the last array: refuses a mesh all of whose fields have values that are not finite. Else one warning for all
-    /// fields that are left out, one for all arrays of cells, and one for each name that several arrays have. unread: by the
-    /// reader
+    /// After the last array: one warning for all fields that are left out, one for those that have gaps, one for all arrays of
+    /// cells, and one for each name that several arrays have. unread: by the reader
     void finish(std::vector<UnreadField>&& unread) {
         LeftOut left_out;
         for (std::vector<UnreadField>* some : {&unread, &unread_}) {
@@ -169,11 +179,14 @@ public:
                 result_.unread.push_back(std::move(field));
             }
         }
-        if (result_.mesh.attributes.empty() && !unread_.empty()) {
-            throw Error(ErrorCode::InvalidInput, result_.unread.back().why,
-                        std::string(file_) + ", array " + in_quotes(result_.unread.back().name));
-        }
         left_out.report("field", "fields", result_.warnings);
+        if (!incomplete_.empty()) {
+            result_.warnings.push_back((incomplete_.size() == 1
+                                            ? "field " + listed(incomplete_) + " has no value at "
+                                            : std::to_string(incomplete_.size()) + " fields (" + listed(incomplete_) +
+                                                  ") are not everywhere; the first has no value at ") +
+                                       gaps_);
+        }
         distinct_.report(result_.warnings);
         if (!labels_.empty()) {
             result_.warnings.push_back(
@@ -253,6 +266,55 @@ private:
         point_labels_.push_back(in_quotes(array.name));
     }
 
+    /// Keeps a field with gaps, unless it has no value at all.
+    bool take_incomplete(const FileArray& array) {
+        FileArray kept = array;
+        for (double& value : kept.values) {
+            if (!std::isfinite(value)) value = std::numeric_limits<double>::quiet_NaN();
+        }
+        const auto components = static_cast<std::size_t>(array.components);
+        const HexMesh& mesh = result_.mesh;
+        FieldInfo info = describe(kept, origin_);
+        Attribute field{array.name, array.components, {}};
+        std::size_t all = 0;
+        if (array.at_cells) {
+            field.cells = of_cells(kept);
+            field.values = mean_over_cells(mesh, field.cells, components);
+            field.constant = cell_values_ == CellValues::Constant || (array.integers && names_label(array.name));
+            all = mesh.cells.size();
+            for (std::size_t c = 0; c < all; ++c) info.missing += has_all(field.cells, c, components) ? 0 : 1;
+        } else {
+            for (std::size_t p = 0; p < origin_.used.size(); ++p) {
+                all += origin_.used[p];
+                if (origin_.used[p]) info.missing += has_all(kept.values, p, components) ? 0 : 1;
+            }
+            field.values = from_points(std::move(kept));
+        }
+        const auto complete = static_cast<std::size_t>(std::ranges::count_if(mesh.cells, [&](const auto& cell) {
+            return std::ranges::all_of(cell, [&](Index p) { return has_all(field.values, p, components); });
+        }));
+        const std::size_t cells = array.at_cells ? all - info.missing : complete;
+        if (info.missing == all) return false;
+        field.name = distinct_.take(array.name);
+        if (incomplete_.empty()) {
+            gaps_ = std::to_string(info.missing) + " of " + std::to_string(all) + " " +
+                    (array.at_cells ? "cells" : std::string(names_.point_word) + "s") +
+                    (cells == 0 ? ", and no cell has it at all of its points"
+                                : ": asked for by its name, it is that of the " + std::to_string(cells) + " of " +
+                                      counted(mesh.cells.size(), "cell", "cells") + " that have it");
+        }
+        incomplete_.push_back(in_quotes(array.name));
+        info.name = field.name;
+        result_.fields.push_back(std::move(info));
+        result_.incomplete.push_back(std::move(field));
+        return true;
+    }
+
+    [[nodiscard]] static bool has_all(const std::vector<double>& values, std::size_t tuple, std::size_t components) {
+        return std::ranges::none_of(std::span(values).subspan(tuple * components, components),
+                                    [](double value) { return std::isnan(value); });
+    }
+
     /// Makes values at points of those at cells.
     void take_cells(const FileArray& array, Attribute& attribute) {
         if (are_means(cell_values_)) {  // fitted later
@@ -329,11 +391,11 @@ private:
 
     ReadResult& result_;
     const Origin& origin_;
-    std::string_view file_;
     const EntityNames& names_;
     CellValues cell_values_;
     NamesApart distinct_{"array"};
-    std::vector<std::string> averaged_, labels_, point_labels_;
+    std::vector<std::string> averaged_, labels_, point_labels_, incomplete_;
+    std::string gaps_;  // of the first of these
     std::vector<UnreadField> unread_;
 };
 
@@ -603,8 +665,8 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
             origin.shell_numbers = found.quads.numbers;
             origin.shell_numbers.insert(origin.shell_numbers.end(), found.lines.numbers.begin(), found.lines.numbers.end());
         }
-        ArrayConversion conversion(result, origin, file, names, options.cell_values);
-        for (auto& array : found.arrays) conversion.take(std::move(array));
+        ArrayConversion conversion(result, origin, names, options.cell_values);
+        std::erase_if(found.arrays, [&](FileArray& array) { return !conversion.take(std::move(array)); });
         conversion.finish(std::move(found.unread));
         if (!result.cell_means.empty() || !result.on_patches.fields.empty()) result.cell_parts = std::move(origin.cell_numbers);
         take_shells(found, result, origin, moved);

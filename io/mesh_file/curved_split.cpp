@@ -16,6 +16,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <unordered_map>
 
@@ -160,6 +162,7 @@ private:
             for (const Index p : nodes_of(c)) {
                 values_of_node(p);
                 for (std::size_t k = 0; k < channels_; ++k) {
+                    if (std::isnan(node_[k])) continue;  // a field with gaps
                     low[k] = std::min(low[k], node_[k]);
                     high[k] = std::max(high[k], node_[k]);
                     if (node_[k] != std::floor(node_[k])) whole[k] = 0;
@@ -228,7 +231,7 @@ private:
         for (const FileArray* array : arrays_) values.emplace_back(points.size() * static_cast<std::size_t>(array->components));
         std::vector<std::uint8_t> filled(points.size());
         FileCells<8> hexes;
-        const bool with_carriers = !found_.patches.empty();
+        const bool with_carriers = !found_.patches.empty() || !found_.node_sets.empty();
         std::vector<std::vector<Index>> carriers(with_carriers ? points.size() : 0);
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const Sizes n = pieces_.of_cell(c);
@@ -236,7 +239,10 @@ private:
             const auto at_grid = shape_of(c).at_grid(n);
             for (std::size_t i = 0; i < grid.size(); ++i) {
                 const Index p = grid[i];
-                if (filled[p] != 0) continue;  // by a neighbour
+                if (filled[p] != 0) {  // by a neighbour, which may lack a field
+                    fill_gaps(&at_grid[i * channels_ + 3], p, values);
+                    continue;
+                }
                 filled[p] = 1;
                 if (with_carriers) carriers[p] = carrier_in(cells_[c], n, i);
                 const double* from = &at_grid[i * channels_];
@@ -264,6 +270,15 @@ private:
                                   : array.name == kWeights && array.components == 1;
         });
         new_hexes_ = std::move(hexes);
+    }
+
+    // from: the values of the arrays at point p in a cell
+    void fill_gaps(const double* from, Index p, std::vector<std::vector<double>>& values) const {
+        for (std::size_t a = 0; a < arrays_.size(); ++a) {
+            const auto components = static_cast<std::size_t>(arrays_[a]->components);
+            if (std::isnan(values[a][p * components])) std::copy_n(from, components, &values[a][p * components]);
+            from += components;
+        }
     }
 
     // The corners of the smallest edge, face or cell that place i of the grid of a cell lies on.
@@ -369,19 +384,36 @@ private:
     FileCells<8> new_hexes_;
 };
 
-// Leaves out the arrays at points that have a value that is not finite where a cell has a node.
+// Leaves out the arrays at points of which no cell has a value at all of its nodes. Others keep their gaps.
 void drop_unusable_fields(MeshFile& found, const EntityNames& names) {
     std::vector<std::uint8_t> used = used_points(found);
     for (const Index p : found.curved.nodes) used[p] = 1;
-    std::erase_if(found.arrays, [&](const FileArray& array) {
+    std::erase_if(found.arrays, [&](FileArray& array) {
         const auto components = static_cast<std::size_t>(array.components);
         if (array.at_cells || array.name == kWeights) return false;  // weights are refused, as they change the shape
+        std::optional<std::size_t> gap;
         for (std::size_t i = 0; i < array.values.size(); ++i) {
             if (std::isfinite(array.values[i]) || !used[i / components]) continue;
-            found.unread.push_back({array.name, "the value at " + names.point(i / components) + " is not finite"});
-            return true;
+            if (!gap) gap = i / components;
+            array.values[i] = std::numeric_limits<double>::quiet_NaN();
         }
-        return false;
+        if (!gap) return false;
+        const auto has_value = [&](Index p) {
+            return std::ranges::none_of(std::span(array.values).subspan(p * components, components),
+                                        [](double value) { return std::isnan(value); });
+        };
+        const auto has_values = [&](std::span<const Index> nodes) { return std::ranges::all_of(nodes, has_value); };
+        std::unordered_map<Index, std::size_t> places;
+        for (std::size_t k = 0; k < found.curved.size(); ++k) places.emplace(found.curved.numbers[k], k);
+        for (std::size_t c = 0; c < found.hexes.corners.size(); ++c) {
+            const auto place = places.find(found.hexes.numbers[c]);
+            if (has_values(place == places.end() ? std::span<const Index>(found.hexes.corners[c])
+                                                 : found.curved.nodes_of(place->second)))
+                return false;
+        }
+        found.unread.push_back(
+            {array.name, "the value at " + names.point(*gap) + " is not finite, and no cell has it at all nodes"});
+        return true;
     });
 }
 

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "subvol/cell.h"
 #include "subvol/detail/counted_rows.h"
@@ -144,6 +145,65 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
     return result;
 }
 
+/// The sets of nodes: the points that are carried by nodes of a set alone, by the cells that have them.
+std::vector<NodeSet> node_sets_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources,
+                                       std::vector<std::string>& warnings) {
+    std::vector<NodeSet> result;
+    if (found.node_sets.empty()) return result;
+    const Carriers carriers{sources, found.carriers};
+    const auto none = static_cast<Index>(mesh.points.size());
+    std::size_t nodes = found.points.size();
+    std::vector<Index> first(mesh.points.size(), none);  // of the nodes that carry each point
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+        carriers.each(p, [&](Index q) {
+            if (first[p] == none) first[p] = q;
+            nodes = std::max(nodes, std::size_t{q} + 1);
+        });
+    }
+    for (const FileSet& set : found.node_sets) {
+        for (const Index q : set.numbers) nodes = std::max(nodes, std::size_t{q} + 1);
+    }
+    const auto carried = counted_rows<Index>(nodes, [&](const auto& put) {
+        for (Index p = 0; p < mesh.points.size(); ++p) {
+            if (first[p] != none) put(first[p], p);
+        }
+    });
+    const auto cells_at = lists_at_points(mesh.cells, mesh.points.size());
+    std::vector<std::uint8_t> in_set(nodes, 0), corners(mesh.cells.size(), 0);
+    std::vector<Index> cells;
+    const auto take = [&](Index p) {
+        for (const Index c : cells_at[p]) {
+            if (corners[c] == 0) cells.push_back(c);
+            for (std::size_t k = 0; k < 8; ++k) {
+                if (mesh.cells[c][k] == p) corners[c] = static_cast<std::uint8_t>(corners[c] | 1U << k);
+            }
+        }
+    };
+    LeftOut left_out;
+    for (const FileSet& set : found.node_sets) {
+        for (const Index q : set.numbers) in_set[q] = 1;
+        for (const Index q : set.numbers) {
+            for (const Index p : carried[q]) {
+                bool all = true;
+                carriers.each(p, [&](Index carrier) { all = all && in_set[carrier] != 0; });
+                if (all) take(p);
+            }
+        }
+        for (const Index q : set.numbers) in_set[q] = 0;
+        std::ranges::sort(cells);
+        NodeSet of_mesh{set.name, {}};
+        for (const Index c : cells) of_mesh.cells.push_back({c, std::exchange(corners[c], std::uint8_t{0})});
+        cells.clear();
+        if (of_mesh.cells.empty()) {
+            left_out.add(set.name, "no cell has a node of it");
+        } else {
+            result.push_back(std::move(of_mesh));
+        }
+    }
+    left_out.report("set of nodes", "sets of nodes", warnings);
+    return result;
+}
+
 }  // namespace
 
 FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers,
@@ -151,6 +211,7 @@ FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::spa
     FileSetsOfMesh result;
     MeshSets& sets = result.sets;
     sets.patches = patches_of_mesh(mesh, found, sources, result.sides, warnings);
+    sets.nodes = node_sets_of_mesh(mesh, found, sources, warnings);
     if (found.sets.empty()) return result;
     const auto number = [&](Index c) { return cell_numbers.empty() ? c : cell_numbers[c]; };
     std::vector<Index> by_number(mesh.cells.size());

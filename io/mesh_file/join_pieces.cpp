@@ -252,6 +252,10 @@ private:
             FileSet& whole = sets_[set.name];
             for (const Index number : set.numbers) whole.numbers.push_back(first + number);
         }
+        for (const FileSet& set : piece.node_sets) {
+            FileSet& whole = node_sets_[set.name];
+            for (const Index p : set.numbers) whole.numbers.push_back(points[p]);
+        }
         // A block is a set of cells, too, by which parts are chosen; the readers of some formats have made these sets.
         if (piece.blocks.size() == 1 &&
             std::ranges::find(piece.sets, piece.blocks[0].name, &FileSet::name) == piece.sets.end()) {
@@ -407,6 +411,7 @@ private:
     MeshFile all_;
     ByName<FilePatch> patches_{all_.patches};
     ByName<FileSet> sets_{all_.sets};
+    ByName<FileSet> node_sets_{all_.node_sets};
     /// The number of a piece's patch in the whole, and that of its first face there.
     struct PatchPlace {
         std::size_t patch, first;

@@ -14,7 +14,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kSharpArray = "SubvolSharp", kPatchArray = "patch:", kSetArray = "set:";
+constexpr std::string_view kSharpArray = "SubvolSharp", kPatchArray = "patch:", kSetArray = "set:", kNodesArray = "nodes:";
 
 constexpr std::size_t kMarkLength = 3;
 using Mark = std::array<std::int64_t, kMarkLength>;
@@ -204,7 +204,33 @@ void add_to_set(ByName<FileSet>& sets, std::string_view array, std::size_t first
     }
 }
 
+std::string node_array_name(const NodeSet& set) {
+    return std::string(kNodesArray) + set.name;
+}
+
+std::vector<std::uint8_t> flags_of(const HexMesh& mesh, const NodeSet& set, std::size_t points) {
+    std::vector<std::uint8_t> flags(points, 0);
+    for (const Index p : points_of(mesh, set)) flags[p] = 1;
+    return flags;
+}
+
+void take_node_set_arrays(MeshFile& found) {
+    const auto is_set = [](const FileArray& array) {
+        return !array.at_cells && array.components == 1 && is_named(array.name, kNodesArray);
+    };
+    ByName<FileSet> sets(found.node_sets);
+    for (const FileArray& array : found.arrays) {
+        if (!is_set(array)) continue;
+        FileSet& set = sets[array.name.substr(kNodesArray.size())];
+        for (Index p = 0; p < array.values.size(); ++p) {
+            if (array.values[p] != 0 && !std::isnan(array.values[p])) set.numbers.push_back(p);
+        }
+    }
+    std::erase_if(found.arrays, is_set);
+}
+
 void take_set_arrays(MeshFile& found) {
+    take_node_set_arrays(found);
     const auto is_set = [](const FileArray& array) {
         return array.at_cells && is_set_array(array.name, static_cast<std::size_t>(array.components));
     };

@@ -62,7 +62,14 @@ void ignore_field_arrays(std::span<const std::string> names, MeshFile& found);
 /// array: the name of the array; first: the number of the first value's cell
 void add_to_set(ByName<FileSet>& sets, std::string_view array, std::size_t first, std::span<const double> values);
 
-/// Makes sets of the arrays that are such.
+/// The name of the array at points that has 1 at those of a set of nodes; and these numbers.
+[[nodiscard]] std::string node_array_name(const NodeSet& set);
+[[nodiscard]] std::vector<std::uint8_t> flags_of(const HexMesh& mesh, const NodeSet& set, std::size_t points);
+
+/// Makes sets of nodes of the arrays at points that are such.
+void take_node_set_arrays(MeshFile& found);
+
+/// Makes sets of cells and of nodes of the arrays that are such.
 void take_set_arrays(MeshFile& found);
 
 /// Whether all values are whole numbers that doubles hold exactly.

@@ -101,7 +101,7 @@ struct FilePatch {
     }
 };
 
-/// A named set of cells, by their numbers among all cells of the file.
+/// A named set of cells, by their numbers among all cells of the file; or of nodes, by the numbers of points.
 struct FileSet {
     std::string name;
     std::vector<Index> numbers;
@@ -148,6 +148,7 @@ struct MeshFile {
     std::vector<MeshBlock> blocks;
     std::vector<FilePatch> patches;
     std::vector<FileSet> sets;
+    std::vector<FileSet> node_sets;
     /// For points that were made in curved cells: the corners between which each lies; none: points are those of the file
     IndexRows carriers;
     bool cut = false;     ///< the cells fit together only if all are cut into tetrahedra

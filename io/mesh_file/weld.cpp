@@ -61,6 +61,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
     std::ranges::for_each(found.sharp.faces, join_tag);
     std::ranges::for_each(found.sharp.edges, join_tag);
     for (FilePatch& patch : found.patches) join_tag(patch.corners);
+    for (FileSet& set : found.node_sets) join_tag(set.numbers);
     found.warnings.push_back(counted(welded, "point", "points") + " welded to others " +
                              (tolerance > 0 ? "nearby" : "at the same place") + "; the values of the first point are kept");
 }

@@ -14,8 +14,9 @@ namespace {
 
 /// Names appear in messages, on terminals, in JSON and in files, and users write them to choose what they name.
 void settle_names(ReadResult& result) {
-    NamesApart fields("array"), patches("patch"), sets("set of cells");
+    NamesApart fields("array"), patches("patch"), sets("set of cells"), nodes("set of nodes");
     for (Attribute& attribute : result.mesh.attributes) attribute.name = fields.take(printable(attribute.name));
+    for (Attribute& attribute : result.incomplete) attribute.name = fields.take(printable(attribute.name));
     for (std::size_t a = 0; a < result.shells.attributes.size(); ++a)
         result.shells.attributes[a].name = result.mesh.attributes.at(a).name;
     for (FieldInfo& field : result.fields) {
@@ -29,8 +30,9 @@ void settle_names(ReadResult& result) {
     for (MeshBlock& block : result.blocks) block.name = printable(block.name);
     for (Patch& patch : result.sets.patches) patch.name = patches.take(printable(patch.name));
     for (CellSet& set : result.sets.sets) set.name = sets.take(printable(set.name));
+    for (NodeSet& set : result.sets.nodes) set.name = nodes.take(printable(set.name));
     for (std::string& warning : result.warnings) warning = printable(warning);
-    for (const NamesApart* names : {&fields, &patches, &sets}) names->report(result.warnings);
+    for (const NamesApart* names : {&fields, &patches, &sets, &nodes}) names->report(result.warnings);
 }
 
 /// Bounds are where the limit is kept: values beyond them would silently become the nearer one.

@@ -103,6 +103,7 @@ std::vector<std::string> GmshGroups::names_of_entity(std::int64_t dimension, std
 }
 
 std::int64_t dimension_of(const GmshElement& element) {
+    if (element.nodes == 1) return 0;
     if (element.shape == GmshShape::Line) return 1;
     return element.shape == GmshShape::Triangle || element.shape == GmshShape::Quad ? 2 : 3;
 }
@@ -115,6 +116,8 @@ bool GmshCells::take(const GmshElement& element, std::size_t number, bool sharp,
     if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, number, type, place);
     if (sharp && dimension_of(element) < 3) {
         take_tag(element, type, place);
+    } else if (!groups_.empty() && dimension_of(element) < 2) {
+        take_nodes(element, number, type, place);
     } else if (!groups_.empty() && dimension_of(element) == 2) {
         take_surface(element, number, type, place);
     } else if (element.shape == GmshShape::Quad && element.nodes == 4) {
@@ -167,6 +170,22 @@ void GmshCells::take_tag(const GmshElement& element, NumberType type, const Plac
     if (corners == 2) return found_.sharp.edges.push_back({tag[0], tag[1]});
     if (corners == 3) tag[3] = tag[2];
     found_.sharp.faces.push_back(tag);
+}
+
+// A point or a line of a group. Plain lines may be beams as well.
+void GmshCells::take_nodes(const GmshElement& element, std::size_t number, NumberType type, const Place& place) {
+    std::vector<Index> nodes;
+    for (std::size_t k = 0; k < element.nodes; ++k) nodes.push_back(nodes_.find(values_.integer(place, type)));
+    const bool known = std::ranges::find(nodes, kNone) == nodes.end();
+    for (const std::string& group : groups_) {
+        if (known) node_sets_[group].numbers.insert(node_sets_[group].numbers.end(), nodes.begin(), nodes.end());
+    }
+    if (known && element.nodes == 2) {
+        found_.lines.corners.push_back({nodes[0], nodes[1]});
+        found_.lines.numbers.push_back(static_cast<Index>(number));
+    } else if (!known || element.nodes > 1) {
+        leave_out(element, 1);
+    }
 }
 
 // A triangle or quad of a group. Plain quads may be shells as well.

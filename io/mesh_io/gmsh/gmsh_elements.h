@@ -175,7 +175,7 @@ private:
     std::map<Key, bool> sharp_;                           // groups that occurred
 };
 
-/// 1 to 3; other elements than lines, triangles and quads count as solid.
+/// 0 to 3; other elements than points, lines, triangles and quads count as solid.
 [[nodiscard]] std::int64_t dimension_of(const GmshElement& element);
 
 /// Puts the elements of a Gmsh file where they belong: cells, shells and beams, tags of sharp groups. Counts what is left out.
@@ -193,7 +193,8 @@ public:
     /// returns: whether it is read as a cell
     bool take(const GmshElement& element, std::size_t number, bool sharp, NumberType type, const Place& place);
 
-    /// The names of the groups of the elements that follow: triangles and quads become patches, cells sets.
+    /// The names of the groups of the elements that follow: points and lines become sets of nodes, triangles and quads patches,
+    /// cells sets.
     void set_groups(std::vector<std::string> names) { groups_ = std::move(names); }
 
     /// To be called after the last element: warnings of what is left out.
@@ -202,6 +203,7 @@ public:
 private:
     Index read_corner(const Place& place, NumberType type);
     void take_tag(const GmshElement& element, NumberType type, const Place& place);
+    void take_nodes(const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     void take_surface(const GmshElement& element, std::size_t number, NumberType type, const Place& place);
     template <std::size_t N>
     void take_shell(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
@@ -215,7 +217,7 @@ private:
     const ReadOptions& options_;
     MeshFile& found_;
     ByName<FilePatch> patches_{found_.patches};
-    ByName<FileSet> sets_{found_.sets};
+    ByName<FileSet> sets_{found_.sets}, node_sets_{found_.node_sets};
     std::vector<std::string> groups_;
     std::size_t curved_ = 0;
     std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;

@@ -197,6 +197,20 @@ public:
     }
 
 private:
+    /// What to do with files of other programs that have the same ending.
+    [[nodiscard]] std::string way_from_others(std::string_view first) const {
+        if (upper_case(first) == "MESH") {
+            return "meshes of GiD begin so, which neither meshio, VTK nor Gmsh reads: export another format from GiD, such as "
+                   "one "
+                   "of docs/formats.md";
+        }
+        if (first.starts_with('(')) {
+            const std::string name = std::filesystem::path(file_).filename().string();
+            return "files of Fluent begin so: python3 -m subvol.convert " + name + " mesh.vtu --format ansys converts them";
+        }
+        return "$MeshFormat is missing";
+    }
+
     void read_format() {
         if (in_.at_end()) in_.fail("the file is empty");
         // Sections before it are those of other programs.
@@ -210,7 +224,7 @@ private:
             return;
         }
         if (first != "$MeshFormat") first = start;
-        if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), "$MeshFormat is missing");
+        if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), way_from_others(first));
         const double version = in_.real({"version"});
         if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5)) {
             in_.fail("version " + number_word() + " of Gmsh's format is not supported", "2 and 4 are: gmsh -save -format msh4");
@@ -441,7 +455,7 @@ private:
     void set_group(std::int64_t dimension, std::int64_t group) {
         if (group_ == std::pair(dimension, group)) return;
         group_ = {dimension, group};
-        const bool one = group > 0 && dimension > 1;
+        const bool one = group > 0;
         cells_.set_groups(one ? std::vector<std::string>{groups_.name_of(dimension, group)} : std::vector<std::string>{});
     }
 

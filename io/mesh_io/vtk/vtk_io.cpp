@@ -17,6 +17,7 @@
 #include "mesh_arrays.h"
 #include "mesh_file.h"
 #include "subvol/detail/refuse_surface.h"
+#include "subvol/error.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
 
@@ -150,9 +151,7 @@ public:
         while (!in_.at_end()) {
             const std::string_view word = in_.word();
             const std::string keyword = upper_case(word);
-            if (!read_section(keyword) && !arrays_.read_section(keyword)) {
-                in_.fail("a keyword is expected, not " + in_quotes(word));
-            }
+            if (!read_section(keyword) && !read_arrays(keyword, word)) break;
         }
         if (cells_.types.size() != cells_.size()) in_.fail("CELLS without CELL_TYPES");
         VtkCellSorter sorter(in_, found_, options_);
@@ -211,6 +210,21 @@ private:
         } else if (keyword == "METADATA") {
             skip_metadata(in_);
         } else {
+            return false;
+        }
+        return true;
+    }
+
+    /// Returns false where arrays that are left out do not end where their number of tuples says so: what follows cannot be
+    /// told from their values.
+    bool read_arrays(const std::string& keyword, std::string_view word) {
+        const TextScanner begin = in_;
+        try {
+            if (!arrays_.read_section(keyword)) in_.fail("a keyword is expected, not " + in_quotes(word));
+        } catch (const Error&) {
+            if (!arrays_.leaves_out()) throw;
+            found_.warnings.push_back("the rest of the file is left out (" + begin.place_of(begin.position()) +
+                                      "): there are not as many values as CELL_DATA or POINT_DATA says");
             return false;
         }
         return true;
@@ -332,12 +346,11 @@ private:
 
     void start_data(bool at_cells, std::size_t tuples, const std::string& what) {
         const std::size_t count = in_.count({at_cells ? "CELL_DATA" : "POINT_DATA"});
-        if (count != tuples) {
-            if (block_) block_->expect_cells(in_);  // a flat one has no cells that values could be at
-            in_.fail((at_cells ? "CELL_DATA is for " : "POINT_DATA is for ") + std::to_string(count) + " " + what +
-                     ", but there are " + std::to_string(tuples));
-        }
-        arrays_.start_data(at_cells, tuples);
+        if (count == tuples) return arrays_.start_data(at_cells, tuples);
+        if (block_) block_->expect_cells(in_);  // a flat one has no cells that values could be at
+        arrays_.start_data(at_cells, count,
+                           in_.place_of(in_.position()) + (at_cells ? ": CELL_DATA is for " : ": POINT_DATA is for ") +
+                               std::to_string(count) + " " + what + ", but there are " + std::to_string(tuples));
     }
 
     TextScanner in_;

@@ -160,10 +160,11 @@ void skip_metadata(TextScanner& in) {
     while (in.line().find_first_not_of(" \t\r") != std::string_view::npos) continue;
 }
 
-void VtkArrayReader::start_data(bool at_cells, std::size_t tuples) {
+void VtkArrayReader::start_data(bool at_cells, std::size_t tuples, std::string wrong) {
     in_data_ = true;
     at_cells_ = at_cells;
     tuples_ = tuples;
+    wrong_ = std::move(wrong);
 }
 
 bool VtkArrayReader::read_section(const std::string& keyword) {
@@ -214,7 +215,7 @@ void VtkArrayReader::read_scalars() {
 void VtkArrayReader::read_colors() {
     const std::string name(in_.word());
     read_values(name, kByte, checked_components(in_, in_.count({"COLOR_SCALARS"})));
-    if (!values_.binary()) return;
+    if (!values_.binary() || leaves_out()) return;
     for (double& value : found_.arrays.back().values) value /= 255;
 }
 
@@ -260,7 +261,11 @@ void VtkArrayReader::read_field_array() {
         return;
     }
     if (tuples != tuples_) {
-        in_.fail(what + " has " + std::to_string(tuples) + " tuples", std::to_string(tuples_) + " are needed");
+        const std::string reason =
+            what + " has " + std::to_string(tuples) + " tuples (" + std::to_string(tuples_) + " are needed)";
+        found_.unread.push_back({decoded(name), in_.place_of(in_.position()) + ": " + reason});
+        skip_values(name, type, checked_components(in_, components) * tuples);
+        return;
     }
     read_values(name, type, checked_components(in_, components));
 }
@@ -273,7 +278,11 @@ void VtkArrayReader::read_values(const std::string& name, VtkType type, std::siz
     values_.begin(type);
     array.values.reserve(std::min(count, values_.room()));
     for (std::size_t i = 0; i < count; ++i) array.values.push_back(values_.real({what, static_cast<std::int64_t>(i)}));
-    found_.arrays.push_back(std::move(array));
+    if (leaves_out()) {
+        found_.unread.push_back({array.name, wrong_});
+    } else {
+        found_.arrays.push_back(std::move(array));
+    }
 }
 
 void VtkArrayReader::skip_values(const std::string& name, VtkType type, std::size_t values) {

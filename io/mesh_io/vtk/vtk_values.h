@@ -72,8 +72,14 @@ public:
     /// returns: whether it has
     bool read_section(const std::string& keyword);
 
-    /// To be called at POINT_DATA or CELL_DATA. tuples: of each array that follows
-    void start_data(bool at_cells, std::size_t tuples);
+    /// To be called at POINT_DATA or CELL_DATA.
+    ///
+    /// tuples: of each array that follows, as the file announces them
+    /// wrong:  why the arrays are left out; empty: they are read
+    void start_data(bool at_cells, std::size_t tuples, std::string wrong = {});
+
+    /// Whether the arrays that follow are left out, since there are other points or cells than they are for.
+    [[nodiscard]] bool leaves_out() const { return !wrong_.empty(); }
 
 private:
     void read_scalars();
@@ -92,6 +98,7 @@ private:
     bool in_data_ = false;
     bool at_cells_ = false;
     std::size_t tuples_ = 0;
+    std::string wrong_;  // why the arrays that follow are left out
 };
 
 }  // namespace subvol::detail

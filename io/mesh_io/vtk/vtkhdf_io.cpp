@@ -237,6 +237,7 @@ private:
         }
         take_field_arrays(taken, found);
         ignore_field_arrays(ignored, found);
+        take_node_set_arrays(found);
     }
 
     // Arrays may have offsets of their own at each step.
@@ -318,6 +319,12 @@ std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const W
         for (const Index c : set.cells) in_set[c] = 1;
         const std::string name = set_array_name(set);
         warn("array", name, out.cell_array(name, std::span<const std::uint8_t>(in_set)));
+    }
+    for (const NodeSet& set : written.sets.nodes) {
+        if (set.cells.empty()) continue;
+        const std::string name = node_array_name(set);
+        const std::vector<std::uint8_t> flags = flags_of(mesh, set, mesh.points.size());
+        warn("array", name, out.array(name, std::span<const std::uint8_t>(flags), 1));
     }
     for (const NamedNumbers& array : settled_arrays(mesh, written.sets))
         warn("array", array.name, out.field(array.name, array.numbers));

@@ -187,6 +187,7 @@ private:
             found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
+        take_node_set_arrays(found_);
         // A program that adds arrays of its own may write a second list of them.
         for (const auto& element : grid.children("FieldData")) read_field_data(element);
         sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
@@ -521,6 +522,9 @@ void write_piece(VtkXmlWriter& out, const Contents& contents) {
     for (const auto& attribute : mesh.attributes) {
         if (is_at_cells(mesh, attribute)) continue;
         out.array<double>(attribute.name, static_cast<std::size_t>(attribute.channels), attribute.values);
+    }
+    for (const NodeSet& set : contents.sets.nodes) {
+        if (!set.cells.empty()) out.array<std::uint8_t>(node_array_name(set), 1, flags_of(mesh, set, points));
     }
     out.line("</PointData>\n<CellData>");
     for (const auto& attribute : mesh.attributes) {

@@ -5,11 +5,12 @@
 //
 //     *NODE, *NGEN      points, from local and cylindrical or spherical systems turned into rectangular ones
 //     *ELEMENT, *ELGEN  elements, over several lines if needed, and copies of them
-//     *ELSET, *SURFACE  sets of elements by numbers, ranges and other sets; sides of elements
+//     *ELSET, *NSET     sets of elements and of nodes by numbers, ranges and other sets
+//     *SURFACE          sides of elements
 //
-// After the last line ranges are replaced by the elements that are there. Names are compared in capitals. Few lines may ask for
-// many nodes, elements and members of sets: they are counted, and limited in proportion to the bytes of the deck. Keywords that
-// would make or move nodes in other ways are refused, as the mesh would be another one.
+// After the last line ranges are replaced by the elements and nodes that are there. Names are compared in capitals. Few lines
+// may ask for many nodes, elements and members of sets: they are counted, and limited in proportion to the bytes of the deck.
+// Keywords that would make or move nodes in other ways are refused, as the mesh would be another one.
 #include "inp_deck.h"
 
 #include <algorithm>
@@ -111,12 +112,15 @@ public:
 
     // After the last line: the numbers of all sets, and what the instances make of them.
     void finish() {
-        for (auto& [name, part] : deck_.parts) expand_ranges(part.sets, elements_of(name));
+        for (auto& part : deck_.parts) {
+            expand_ranges(part.second.sets, [&] { return elements_of(part.first); });
+            expand_ranges(part.second.node_sets, [&] { return nodes_of(part.first); });
+        }
         count_instances();
     }
 
 private:
-    enum class Section { Other, Node, Element, ElementSet, Instance, System, NodesBetween, ElementsLike, Surface };
+    enum class Section { Other, Node, Element, ElementSet, NodeSet, Instance, System, NodesBetween, ElementsLike, Surface };
 
     struct Places {
         std::unordered_map<std::int64_t, std::size_t> at;
@@ -127,11 +131,11 @@ private:
         in_->fail_at(position_, message, allowed);
     }
 
-    // Ranges name all numbers between two: those that are elements stay.
-    void expand_ranges(std::map<std::string, InpSet>& sets, const std::vector<const InpElement*>& elements) {
+    // Ranges name all numbers between two: those that are elements or nodes stay. there: returns the numbers of these
+    template <class There>
+    void expand_ranges(std::map<std::string, InpSet>& sets, const There& there) {
         if (std::ranges::all_of(sets, [](const auto& set) { return set.second.ranges.empty(); })) return;
-        std::vector<std::int64_t> numbers;
-        for (const InpElement* element : elements) numbers.push_back(element->number);
+        std::vector<std::int64_t> numbers = there();
         std::ranges::sort(numbers);
         for (auto& [name, set] : sets) {
             for (const auto& [first, last, step] : set.ranges) {
@@ -146,20 +150,31 @@ private:
     }
 
     // The elements that the numbers in sets of a part mean: those of an instance may be in its part.
-    [[nodiscard]] std::vector<const InpElement*> elements_of(const std::string& name) const {
-        std::vector<const InpElement*> elements;
-        const auto add = [&](const std::string& part) {
+    [[nodiscard]] std::vector<std::int64_t> elements_of(const std::string& name) const {
+        return numbers_in(name, [](const InpPart& part, std::vector<std::int64_t>& numbers) {
+            for (const InpElement& element : part.elements) numbers.push_back(element.number);
+        });
+    }
+    [[nodiscard]] std::vector<std::int64_t> nodes_of(const std::string& name) const {
+        return numbers_in(name, [](const InpPart& part, std::vector<std::int64_t>& numbers) {
+            numbers.insert(numbers.end(), part.numbers.begin(), part.numbers.end());
+        });
+    }
+
+    template <class Add>
+    [[nodiscard]] std::vector<std::int64_t> numbers_in(const std::string& name, const Add& add) const {
+        std::vector<std::int64_t> numbers;
+        const auto add_part = [&](const std::string& part) {
             const auto found = deck_.parts.find(part);
-            if (found == deck_.parts.end()) return;
-            for (const InpElement& element : found->second.elements) elements.push_back(&element);
+            if (found != deck_.parts.end()) add(found->second, numbers);
         };
-        add(name);
-        if (elements.empty() && name.starts_with(kInside)) {
+        add_part(name);
+        if (numbers.empty() && name.starts_with(kInside)) {
             for (const InpInstance& instance : deck_.instances) {
-                if (instance.inside == name) add(instance.part);
+                if (instance.inside == name) add_part(instance.part);
             }
         }
-        return elements;
+        return numbers;
     }
 
     // Each instance of a part is another copy of its nodes and elements, and of the members of its sets.
@@ -167,7 +182,9 @@ private:
         std::set<std::string_view> met;
         std::map<std::string_view, std::size_t> members;
         for (const auto& [name, part] : deck_.parts) {
-            for (const auto& [key, set] : part.sets) members[name] += 1 + set.numbers.size();
+            for (const auto* sets : {&part.sets, &part.node_sets}) {
+                for (const auto& [key, set] : *sets) members[name] += 1 + set.numbers.size();
+            }
         }
         for (const InpInstance& instance : deck_.instances) {
             const auto part = deck_.parts.find(instance.part);
@@ -194,6 +211,7 @@ private:
         }
         section_ = Section::Other;
         scope_ = part_;
+        kind_ = &InpPart::sets;
         lines_ = 0;
         if (keyword == "*INCLUDE") return values_["INPUT"];
         if (std::ranges::find(kChangesTheMesh, keyword) != kChangesTheMesh.end()) {
@@ -225,6 +243,17 @@ private:
             if (values_["ELSET"].empty()) fail("the *ELSET has no name");
             if (values_.contains("INSTANCE")) scope_ = kInside + upper_case(values_["INSTANCE"]);
             set_of(values_["ELSET"]);
+        } else if (keyword == "*NSET") {
+            section_ = Section::NodeSet;
+            kind_ = &InpPart::node_sets;
+            if (values_.contains("INSTANCE")) scope_ = kInside + upper_case(values_["INSTANCE"]);
+            if (values_["NSET"].empty()) {
+                leave_out_set("it has no name");
+            } else if (values_.contains("ELSET")) {
+                leave_out_set("it is that of the nodes of a set of elements, ELSET");
+            } else {
+                set_of(values_["NSET"]);
+            }
         }
         if (keyword == "*SURFACE") start_surface();
         const bool has_data = section_ == Section::Node || section_ == Section::Element;
@@ -233,7 +262,12 @@ private:
 
     void start_surface() {
         const std::string type = upper_case(values_["TYPE"]);
-        if (values_["NAME"].empty() || (!type.empty() && type != "ELEMENT") || values_.contains("COMBINE")) return;
+        if ((!type.empty() && type != "ELEMENT") || values_.contains("COMBINE")) {
+            const std::string why = values_.contains("COMBINE") ? "it combines others" : "it is of type " + type;
+            deck_.surfaces_left_out.add(values_["NAME"], in_->place_of(position_) + ": " + why);
+            return;
+        }
+        if (values_["NAME"].empty()) return;
         section_ = Section::Surface;
         deck_.surfaces.push_back({values_["NAME"], part_, {}});
     }
@@ -274,9 +308,18 @@ private:
 
     // The set of a name in the part or instance that the line is about.
     InpSet& set_of(const std::string& name) {
-        InpSet& set = deck_.parts[scope_].sets[upper_case(name)];
+        InpSet& set = (deck_.parts[scope_].*kind_)[upper_case(name)];
         if (set.name.empty()) set.name = name;
         return set;
+    }
+
+    // *NODE and *NGEN put their nodes into a set.
+    void add_to_node_set(std::int64_t number) {
+        const std::string& name = values_["NSET"];
+        if (name.empty()) return;
+        kind_ = &InpPart::node_sets;
+        set_of(name).numbers.push_back(number);
+        kind_ = &InpPart::sets;
     }
 
     void add_to_set(const std::string& name, std::int64_t number) {
@@ -295,7 +338,8 @@ private:
         if (section_ == Section::Element) take_element(line);
         if (section_ == Section::NodesBetween) generate_nodes(fields_of(line));
         if (section_ == Section::ElementsLike) generate_elements(fields_of(line));
-        if (section_ == Section::ElementSet) take_set(fields_of(line));
+        if (section_ == Section::ElementSet) take_set(values_["ELSET"], fields_of(line));
+        if (section_ == Section::NodeSet) take_set(values_["NSET"], fields_of(line));
         if (section_ == Section::Surface) take_side(fields_of(line));
         if (section_ == Section::Instance) take_place(fields_of(line));
         if (section_ == Section::System) take_system(fields_of(line));
@@ -332,6 +376,7 @@ private:
         if (coordinates_ != Coordinates::Rectangular) x.y *= kRadians;
         if (coordinates_ == Coordinates::Spherical) x.z *= kRadians;
         part.points.push_back(system_(rectangular(coordinates_, x)));
+        add_to_node_set(part.numbers.back());
     }
 
     // The origin, a point on the first axis, and in the next line one on the side of the second axis. Without the latter the
@@ -393,9 +438,12 @@ private:
                  std::to_string(step));
         const std::int64_t count = std::abs(last - first) / step;
         count_generated(static_cast<std::size_t>(count));
+        add_to_node_set(first);
+        add_to_node_set(last);
         for (std::int64_t k = 1; k < count; ++k) {
             const double t = static_cast<double>(k) / static_cast<double>(count);
             part.numbers.push_back(first + (last > first ? k : -k) * step);
+            add_to_node_set(part.numbers.back());
             part.points.push_back((1 - t) * from + t * to);
         }
     }
@@ -483,24 +531,26 @@ private:
         numbers_.clear();
     }
 
+    void leave_out_set(const std::string& why) {
+        const bool of_nodes = kind_ == &InpPart::node_sets;
+        (of_nodes ? deck_.node_sets_left_out : deck_.sets_left_out)
+            .add(values_[of_nodes ? "NSET" : "ELSET"], in_->place_of(position_) + ": " + why);
+        section_ = Section::Other;
+    }
+
     // A set that cannot be read stops nothing but itself.
-    void take_set(const std::vector<std::string_view>& fields) {
-        const std::string& name = values_["ELSET"];
-        const auto leave_out = [&](const std::string& why) {
-            deck_.sets_left_out.add(name, in_->place_of(position_) + ": " + why);
-            section_ = Section::Other;
-        };
+    void take_set(const std::string& name, const std::vector<std::string_view>& fields) {
         if (values_.contains("GENERATE")) {
             std::array<std::int64_t, 3> range{0, 0, 1};
             for (std::size_t i = 0; i < std::min<std::size_t>(3, fields.size()); ++i) {
                 const auto number = number_in(fields[i]);
-                if (!number && !(i == 2 && fields[i].empty())) return leave_out("it is not a range of numbers");
+                if (!number && !(i == 2 && fields[i].empty())) return leave_out_set("it is not a range of numbers");
                 range[i] = number.value_or(1);
             }
             if (fields.size() == 1) range[1] = range[0];
             constexpr std::int64_t kLargest = std::int64_t{1} << 40;
             if (fields.empty() || range[2] < 1 || range[1] < range[0] || range[0] < 0 || range[1] > kLargest)
-                return leave_out("it is not a range of numbers");
+                return leave_out_set("it is not a range of numbers");
             count_members(1);
             set_of(name).ranges.push_back(range);
             return;
@@ -509,7 +559,7 @@ private:
             if (const auto number = number_in(field)) {
                 set_of(name).numbers.push_back(*number);
             } else if (!add_set(name, name_of(field))) {
-                leave_out("there is no set " + in_quotes(std::string(field)));
+                leave_out_set("there is no set " + in_quotes(std::string(field)));
             }
         }
     }
@@ -547,8 +597,9 @@ private:
         const auto in = [&](const std::string& part) -> const InpSet* {
             const auto sets = deck_.parts.find(part);
             if (sets == deck_.parts.end()) return nullptr;
-            const auto found = sets->second.sets.find(upper_case(member));
-            return found == sets->second.sets.end() ? nullptr : &found->second;
+            const auto& all = sets->second.*kind_;
+            const auto found = all.find(upper_case(member));
+            return found == all.end() ? nullptr : &found->second;
         };
         const InpSet* other = in(scope_);
         for (const InpInstance& instance : deck_.instances) {
@@ -584,8 +635,9 @@ private:
     std::string_view file_;
     std::size_t position_ = 0, line_ = 0;  // of the line, and its number
     Section section_ = Section::Other;
-    std::map<std::string, std::string> values_;  // of the keyword
-    std::string part_, scope_;                   // that nodes and elements belong to, and those of a set
+    std::map<std::string, std::string> values_;                      // of the keyword
+    std::string part_, scope_;                                       // that nodes and elements belong to, and those of a set
+    std::map<std::string, InpSet> InpPart::*kind_ = &InpPart::sets;  // of sets that lines are about
     const InpType* type_ = nullptr;
     std::vector<std::int64_t> numbers_;  // of the element so far
     bool open_ = false;                  // whether the next line goes on with an element that is not read

@@ -23,7 +23,7 @@ struct InpElement {
     std::string_view place;           ///< for messages
 };
 
-/// Elements by their numbers.
+/// Elements or nodes by their numbers.
 struct InpSet {
     std::string name;  ///< as it is written first
     std::vector<std::int64_t> numbers;
@@ -48,7 +48,8 @@ struct InpPart {
     std::vector<std::int64_t> numbers;
     std::vector<Vec3> points;
     std::vector<InpElement> elements;
-    std::map<std::string, InpSet> sets;  ///< sets of elements, by names in capitals
+    std::map<std::string, InpSet> sets;       ///< sets of elements, by names in capitals
+    std::map<std::string, InpSet> node_sets;  ///< the same of nodes
 };
 
 /// A part where the assembly puts it: turned about an axis, after it was moved.
@@ -76,7 +77,7 @@ struct InpDeck {
     std::vector<InpSurface> surfaces;
     std::size_t made = 0;    // nodes and elements that are not in the text, those of instances among them
     std::size_t longer = 0;  // elements with more numbers than their types have nodes
-    LeftOut sets_left_out;
+    LeftOut sets_left_out, node_sets_left_out, surfaces_left_out;
 };
 
 /// throws: Error(InvalidInput) that names the file and the line

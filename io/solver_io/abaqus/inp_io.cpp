@@ -82,12 +82,14 @@ private:
             if (part == deck_.parts.end() && !has_mesh) {
                 if (!instance.part.empty()) fail("there is no part " + in_quotes(instance.part));
                 throw Error(ErrorCode::InvalidInput, "it has no nodes", file_,
-                            "*NODE is needed; AVS UCD files have this ending, too: python3 -m subvol.convert --format avsucd");
+                            "*NODE is needed; AVS UCD files have this ending, too: with the ending .ucd they are read");
             }
             std::vector<const std::map<std::string, InpSet>*> sets;
             if (part != deck_.parts.end()) sets.push_back(&part->second.sets);
             if (inside != deck_.parts.end() && inside != part) sets.push_back(&inside->second.sets);
             add(has_mesh ? inside->second : part->second, instance, sets, choice);
+            if (part != deck_.parts.end()) add_node_sets(part->second.node_sets);
+            if (inside != deck_.parts.end() && inside != part) add_node_sets(inside->second.node_sets);
         }
         if (deck_.parts_alone > 0) {
             found_.warnings.push_back(counted(deck_.parts_alone, "part has", "parts have") +
@@ -98,6 +100,11 @@ private:
                                       " more numbers than nodes: those after the last node are ignored");
         }
         deck_.sets_left_out.report("set of elements", "sets of elements", found_.warnings);
+        deck_.node_sets_left_out.report("set of nodes", "sets of nodes", found_.warnings);
+        deck_.surfaces_left_out.report("surface", "surfaces", found_.warnings);
+        if (unknown_nodes_ > 0) {
+            found_.warnings.push_back(counted(unknown_nodes_, "number", "numbers") + " in sets of nodes that no node has");
+        }
         if (moved_ > 0) {
             found_.warnings.push_back(counted(moved_, "node is", "nodes are") +
                                       " listed again with other coordinates: the last ones are taken");
@@ -223,6 +230,22 @@ private:
         }
     }
 
+    /// After `add`: the nodes of the instance that it added. Sets of several parts whose names differ in the case of letters
+    /// are one.
+    void add_node_sets(const Sets& sets) {
+        for (const auto& [key, set] : sets) {
+            FileSet& nodes = node_sets_[node_set_names_.try_emplace(key, set.name).first->second];
+            for (const std::int64_t number : set.numbers) {
+                const auto place = places_.find(number);
+                if (place == places_.end()) {
+                    ++unknown_nodes_;
+                } else {
+                    nodes.numbers.push_back(place->second);
+                }
+            }
+        }
+    }
+
     // side: from 1, or 0 for all of them, of which those inside the mesh fall away later
     void add_side(const InpElement& element, std::size_t side, FilePatch& patch) const {
         const auto& sides = inp_sides(element.type->shape);
@@ -313,7 +336,9 @@ private:
     std::map<std::string, bool> sets_of_surfaces_;            // whether they are there
     std::size_t next_ = 0, curved_ = 0, sides_ = 0, moved_ = 0;
     ByName<FilePatch> patches_{found_.patches};
-    ByName<FileSet> sets_{found_.sets};
+    std::size_t unknown_nodes_ = 0;                      // numbers of sets of nodes that are no nodes
+    std::map<std::string, std::string> node_set_names_;  // by names in capitals
+    ByName<FileSet> sets_{found_.sets}, node_sets_{found_.node_sets};
 };
 
 }  // namespace

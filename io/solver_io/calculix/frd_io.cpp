@@ -477,6 +477,12 @@ private:
             }
             cells_of[set.name] = taken.numbers.size();
         }
+        for (const FileSet& set : deck.found.node_sets) {
+            FileSet& taken = found_.node_sets.emplace_back(FileSet{set.name, {}});
+            for (const Index point : set.numbers) {
+                if (node_at(point) != kNone) taken.numbers.push_back(node_at(point));
+            }
+        }
         for (MeshBlock block : deck.found.blocks) {
             block.cells = cells_of[block.name];
             if (block.cells > 0) found_.blocks.push_back(block);
@@ -517,17 +523,6 @@ private:
             list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + std::string(type);
         }
         add_left_out_warning(found_, list, file_);
-        const auto used = used_points(found_);
-        std::erase_if(found_.arrays, [&](const FileArray& array) {
-            const auto components = static_cast<std::size_t>(array.components);
-            for (std::size_t p = 0; p < used.size(); ++p) {
-                if (!used[p] || !std::isnan(array.values[p * components])) continue;
-                found_.warnings.push_back("result " + in_quotes(array.name) + " is not at node " + std::to_string(numbers_[p]) +
-                                          ": ignored");
-                return true;
-            }
-            return false;
-        });
     }
 
     static constexpr std::size_t kOfLine = 6, kMostComponents = 60;

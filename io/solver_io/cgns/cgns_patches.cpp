@@ -33,7 +33,7 @@ using Triple = std::array<std::int64_t, 3>;
 class Conditions {
 public:
     Conditions(const CgnsTree& tree, const StructuredGrid* grid, const CgnsFaces& faces, MeshFile& into)
-        : tree_(tree), grid_(grid), faces_(faces), into_(into), patches_(into.patches) {}
+        : tree_(tree), grid_(grid), faces_(faces), into_(into), patches_(into.patches), node_sets_(into.node_sets) {}
 
     void read(const std::string& node) {
         std::string location =
@@ -52,6 +52,7 @@ public:
         if (numbers.empty() || numbers.size() % width != 0 || (range && numbers.size() != 2 * width))
             tree_.file().fail("node " + in_quotes(node) + " does not list its points");
         new_faces_.clear();
+        new_vertices_.clear();
         if (grid_) {
             add_structured(node, location, numbers, range);
         } else if (location == "Vertex") {
@@ -66,7 +67,13 @@ public:
         }
         const auto family = tree_.child(node, "FamilyName_t");
         const std::string of_family = family ? tree_.text(*family) : std::string();
-        FilePatch& patch = patches_[as_utf8(of_family.empty() ? CgnsTree::name_of(node) : of_family)];
+        const std::string name = as_utf8(of_family.empty() ? CgnsTree::name_of(node) : of_family);
+        if (new_faces_.empty() && !new_vertices_.empty()) {  // on an edge, or at single vertices
+            FileSet& set = node_sets_[name];
+            set.numbers.insert(set.numbers.end(), new_vertices_.begin(), new_vertices_.end());
+            return;
+        }
+        FilePatch& patch = patches_[name];
         for (const auto& face : new_faces_) patch.add(face);
     }
 
@@ -102,6 +109,9 @@ private:
 
     /// The faces of cells whose corners are all chosen.
     void add_faces_of(const std::vector<std::uint8_t>& chosen) {
+        for (Index p = 0; p < chosen.size(); ++p) {
+            if (chosen[p] != 0) new_vertices_.push_back(p);
+        }
         const auto add = [&](const auto& cells, const auto& sides) {
             for (const auto& cell : cells.corners) {
                 for (const auto& side : sides) {
@@ -178,7 +188,9 @@ private:
     const CgnsFaces& faces_;
     MeshFile& into_;
     ByName<FilePatch> patches_;
+    ByName<FileSet> node_sets_;
     std::vector<std::vector<Index>> new_faces_;  // of the condition at hand
+    std::vector<Index> new_vertices_;
 };
 
 }  // namespace

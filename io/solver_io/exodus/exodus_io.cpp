@@ -220,7 +220,11 @@ std::vector<Variable> with_components(const std::vector<std::string>& names) {
 class ExodusReader {
 public:
     ExodusReader(std::string_view bytes, std::string_view file, const ReadOptions& options)
-        : in_(std::string_view(), file, TextScanner::Comments::None), file_(file), options_(options), exodus_(bytes, file) {
+        : in_(std::string_view(), file, TextScanner::Comments::None),
+          file_(file),
+          options_(options),
+          exodus_(bytes, file),
+          bytes_(bytes.size()) {
         in_.name_no_place();
     }
 
@@ -255,12 +259,16 @@ private:
             for (std::size_t e = 0; e < block.size; ++e) set.numbers.push_back(static_cast<Index>(block.first + e));
         }
         // What names parts of the mesh stops nothing but itself where it cannot be read.
-        try {
-            read_side_sets();
-            read_element_sets();
-        } catch (const Error& error) {
-            found_.warnings.push_back("side sets or element sets ignored: " + error.message());
-        }
+        const auto read_or_ignore = [&](const std::string& what, const auto& read) {
+            try {
+                read();
+            } catch (const Error& error) {
+                found_.warnings.push_back(what + " ignored: " + error.message());
+            }
+        };
+        read_or_ignore("side sets", [&] { read_side_sets(); });
+        read_or_ignore("node sets", [&] { read_node_sets(); });
+        read_or_ignore("element sets", [&] { read_element_sets(); });
         read_variables();
         const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
         if (others > 0) left_out_[kNfaced] += others;
@@ -476,6 +484,23 @@ private:
         }
     }
 
+    void read_node_sets() {
+        const std::size_t count = exodus_.dimension("num_node_sets");
+        const auto names = names_of_sets(count, "ns", "node set");
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::string variable = "node_ns" + std::to_string(k + 1);
+            const std::size_t size = exodus_.dimension("num_nod_ns" + std::to_string(k + 1));
+            if (size == 0) continue;
+            FileSet set{names[k], {}};
+            for (const std::int64_t node : exodus_.integers(variable, size)) {
+                if (node < 1 || static_cast<std::uint64_t>(node) > found_.points.size())
+                    exodus_.fail(variable + ": there is no node " + std::to_string(node));
+                set.numbers.push_back(static_cast<Index>(node - 1));
+            }
+            found_.node_sets.push_back(std::move(set));
+        }
+    }
+
     void read_element_sets() {
         const std::size_t count = exodus_.dimension("num_elem_sets");
         const auto names = names_of_sets(count, "els", "element set");
@@ -520,7 +545,8 @@ private:
             const std::size_t number = variable.numbers[c];
             const auto values = at_cells ? element_values(number) : node_values(number);
             if (values.empty()) {
-                found_.warnings.push_back("array " + in_quotes(variable.name) + " is not in every block: ignored");
+                found_.warnings.push_back("array " + in_quotes(variable.name) +
+                                          " is not in the blocks that are read, or in too few: ignored");
                 return;
             }
             for (std::size_t i = 0; i < values.size(); ++i) array.values[i * components + c] = values[i];
@@ -535,18 +561,22 @@ private:
         return exodus_.reals("vals_nod_var", {step_, variable - 1}, nodes);  // as in the first versions
     }
 
-    // One value for each element of the file: NaN where a block that is left out has none. Empty if a block that is taken has
-    // none.
-    [[nodiscard]] std::vector<double> element_values(std::size_t variable) const {
+    // One value for each element of the file: NaN where a block has none. Empty if no block that is taken has one, or if too
+    // many are missing for a file of this size.
+    [[nodiscard]] std::vector<double> element_values(std::size_t variable) {
         std::vector<double> values(elements_, std::numeric_limits<double>::quiet_NaN());
+        bool any = false;
         for (const Block& block : blocks_) {
             const std::string name = "vals_elem_var" + std::to_string(variable) + "eb" + std::to_string(block.number);
-            const bool has = exodus_.has(name);
-            if (!has && block.taken) return {};
-            if (!has) continue;
+            if (!exodus_.has(name)) {
+                if (block.taken) missing_ += block.size;
+                continue;
+            }
+            any = any || block.taken;
             const auto of_block = exodus_.reals(name, {step_}, block.size);
             std::copy(of_block.begin(), of_block.end(), values.begin() + static_cast<std::ptrdiff_t>(block.first));
         }
+        if (!any || missing_ > std::max(kFewMissing, bytes_)) return {};
         return values;
     }
 
@@ -554,10 +584,14 @@ private:
     std::string_view file_;
     ReadOptions options_;
     ExodusFile exodus_;
+    std::size_t bytes_;
     MeshFile found_;
     std::vector<Block> blocks_;
     std::size_t elements_ = 0;
+    static constexpr std::size_t kFewMissing = std::size_t{1} << 20;
+
     std::size_t curved_ = 0;
+    std::size_t missing_ = 0;  // values that blocks lack
     std::size_t step_ = 0;
     std::map<std::string, std::size_t> left_out_;
     CellFaces faces_;  // of the blocks of faces, read when the first polyhedra are

@@ -21,7 +21,7 @@ namespace subvol {
 namespace {
 
 constexpr const char* kKinds =
-    "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME, fold:VERDICT";
+    "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, where:EXPRESSION, set:NAME, nodes:NAME, fold:VERDICT";
 
 std::vector<double> numbers_of(const std::string& text, std::string_view list, std::size_t count) {
     std::vector<double> numbers;
@@ -82,8 +82,8 @@ Region::Region(const std::string& text) : text_(text) {
         const Vec3 normal(n[3], n[4], n[5]);
         if (glm::length(normal) == 0) flat("has no normal");
         normal_ = glm::normalize(normal);
-    } else if ((name == "where" || name == "set") && !rest.empty()) {
-        kind_ = name == "set" ? Kind::Set : Kind::Where;
+    } else if ((name == "where" || name == "set" || name == "nodes") && !rest.empty()) {
+        kind_ = name == "set" ? Kind::Set : name == "nodes" ? Kind::Nodes : Kind::Where;
         quantity_ = rest;
     } else if (name == "fold" && !rest.empty()) {
         kind_ = Kind::Fold;
@@ -152,11 +152,31 @@ void refuse_none(std::span<const std::uint8_t> cells) {
 RegionCells::RegionCells(const HexMesh& mesh, const MeshSets& sets) : mesh_(mesh), sets_(sets) {
 }
 
+template <class Sets, class Find, class Use>
+void RegionCells::each_set(const Sets& sets, const std::string& names, const Find& find, const Use& use) const {
+    using Set = typename Sets::value_type;
+    const auto whole = std::ranges::find(sets, names, &Set::name);
+    if (whole != sets.end()) return use(*whole);
+    each_name(names, [&](const std::string& name) {
+        const auto same = [&](const Set& set) { return small_letters(set.name) == small_letters(name); };
+        const bool is_there = std::ranges::find(sets, name, &Set::name) != sets.end();
+        const auto alike = std::ranges::find_if(sets, same);  // names may differ in the case of letters
+        use(is_there || alike == sets.end() ? find(sets_, name) : *alike);
+    });
+}
+
 std::vector<std::uint8_t> RegionCells::in(const Region& region) {
     std::vector<std::uint8_t> inside(mesh_.cells.size(), 0);
     switch (region.kind()) {
         case Region::Kind::Set:
-            add_sets(region.quantity(), inside);
+            each_set(sets_.sets, region.quantity(), find_set, [&](const CellSet& set) {
+                for (const Index c : set.cells) inside[c] = 1;
+            });
+            break;
+        case Region::Kind::Nodes:
+            each_set(sets_.nodes, region.quantity(), find_node_set, [&](const NodeSet& set) {
+                for (const CellCorners& at : set.cells) inside[at.cell] = 1;
+            });
             break;
         case Region::Kind::Fold: {
             const std::vector<FoldVerdict> wanted = verdicts_of(region.quantity());
@@ -179,20 +199,6 @@ std::vector<std::uint8_t> RegionCells::in(const Region& region) {
             });
     }
     return inside;
-}
-
-void RegionCells::add_sets(const std::string& names, std::vector<std::uint8_t>& inside) const {
-    const auto add = [&](const CellSet& set) {
-        for (const Index c : set.cells) inside[c] = 1;
-    };
-    const auto whole = std::ranges::find(sets_.sets, names, &CellSet::name);
-    if (whole != sets_.sets.end()) return add(*whole);
-    each_name(names, [&](const std::string& name) {
-        const auto same = [&](const CellSet& set) { return small_letters(set.name) == small_letters(name); };
-        const bool is_there = std::ranges::find(sets_.sets, name, &CellSet::name) != sets_.sets.end();
-        const auto alike = std::ranges::find_if(sets_.sets, same);  // names may differ in the case of letters
-        add(is_there || alike == sets_.sets.end() ? find_set(sets_, name) : *alike);
-    });
 }
 
 }  // namespace detail

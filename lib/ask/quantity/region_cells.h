@@ -21,8 +21,9 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> in(const Region& region);
 
 private:
-    /// Marks the cells of one of several sets, whose names have commas between, unless one is called so.
-    void add_sets(const std::string& names, std::vector<std::uint8_t>& inside) const;
+    /// Calls use(set) for each of several sets, whose names have commas between, unless one is called so.
+    template <class Sets, class Find, class Use>
+    void each_set(const Sets& sets, const std::string& names, const Find& find, const Use& use) const;
 
     const HexMesh& mesh_;
     const MeshSets& sets_;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Named parts of a mesh go along when cells are left out, refined or split. All rules look at one cell alone: sides of a patch
+// and corners of a set of nodes belong to a cell, so a part of the cell has those of its own sides and corners that lie on
+// them. A new corner belongs to a set of nodes if all corners of the edge, the face or the cell that it lies on do.
 #include "subvol/mesh_sets.h"
 
 #include <algorithm>
@@ -34,6 +37,27 @@ std::string counted_names(const std::vector<Named>& all, std::string_view one, s
     for (std::size_t k = 0; k < std::min(kNamed, all.size()); ++k)
         list += (k == 0 ? "" : ", ") + detail::printable(all[k].name);
     return list + (all.size() > kNamed ? ", …)" : ")");
+}
+
+/// Corners of a part of a cell that belong to a set which has some corners of the cell: where all corners of the edge, the face
+/// or the cell that they lie on belong to it.
+///
+/// lower, upper: of the part, in the parameters of the cell
+std::uint8_t corners_of_part(std::uint8_t of_cell, const Vec3& lower, const Vec3& upper) {
+    std::uint8_t result = 0;
+    for (std::size_t k = 0; k < kCornerParameters.size(); ++k) {
+        bool all = true;
+        for (std::size_t c = 0; c < kCornerParameters.size() && all; ++c) {
+            bool near = true;  // the corner is one of those of the edge, face or cell
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double at = kCornerParameters[k][a] == 0 ? lower[static_cast<int>(a)] : upper[static_cast<int>(a)];
+                near = near && !(kCornerParameters[c][a] == 0 ? at == 1 : at == 0);
+            }
+            all = !near || (of_cell >> c & 1U) != 0;
+        }
+        if (all) result = static_cast<std::uint8_t>(result | 1U << k);
+    }
+    return result;
 }
 
 /// The first item that is there more than once; nothing if each is there once.
@@ -86,14 +110,26 @@ void validate(const MeshSets& sets, const HexMesh& mesh) {
                     "set " + detail::in_quotes(set.name) + " has cell " + std::to_string(*twice) + " more than once", {},
                     "once");
     }
+    for (const NodeSet& set : sets.nodes) {
+        for (const CellCorners& at : set.cells) check("set of nodes", set.name, "cell", at.cell, mesh.cells.size());
+        const auto twice = repeated(set.cells, [](const CellCorners& at) { return at.cell; });
+        if (!twice) continue;
+        throw Error(
+            ErrorCode::InvalidInput,
+            "set of nodes " + detail::in_quotes(set.name) + " has cell " + std::to_string(twice->cell) + " more than once", {},
+            "once");
+    }
     check_names("patches", sets.patches);
     check_names("sets of cells", sets.sets);
+    check_names("sets of nodes", sets.nodes);
 }
 
 std::string list_of(const MeshSets& sets) {
     const std::string patches = counted_names(sets.patches, "patch", "patches");
     const std::string cells = counted_names(sets.sets, "set of cells", "sets of cells");
-    return patches + (patches.empty() || cells.empty() ? "" : " and ") + cells;
+    const std::string nodes = counted_names(sets.nodes, "set of nodes", "sets of nodes");
+    const std::string first = patches + (patches.empty() || cells.empty() ? "" : nodes.empty() ? " and " : ", ") + cells;
+    return first + (first.empty() || nodes.empty() ? "" : " and ") + nodes;
 }
 
 const Patch& find_patch(const MeshSets& sets, std::string_view name) {
@@ -102,6 +138,34 @@ const Patch& find_patch(const MeshSets& sets, std::string_view name) {
 
 const CellSet& find_set(const MeshSets& sets, std::string_view name) {
     return find(sets.sets, name, "set", "sets of cells");
+}
+
+const NodeSet& find_node_set(const MeshSets& sets, std::string_view name) {
+    return find(sets.nodes, name, "set of nodes", "sets of nodes");
+}
+
+std::vector<Index> points_of(const HexMesh& mesh, const NodeSet& set) {
+    std::vector<Index> points;
+    for (const auto& [cell, corners] : set.cells) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            if ((corners >> k & 1U) != 0) points.push_back(mesh.cells[cell][k]);
+        }
+    }
+    std::ranges::sort(points);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+}
+
+Patch boundary_of(const HexMesh& mesh, const NodeSet& set) {
+    // All cells at these points are in the set: a side without another cell of them beside it is on the boundary.
+    CellSet cells{set.name, {}};
+    for (const CellCorners& at : set.cells) cells.cells.push_back(at.cell);
+    Patch patch = hull_of(mesh, cells);
+    std::erase_if(patch.sides, [&](const CellSide& side) {
+        const auto at = std::ranges::lower_bound(set.cells, side.cell, {}, &CellCorners::cell);
+        return !std::ranges::all_of(kCellFaces[side.side], [&](std::size_t k) { return (at->corners >> k & 1U) != 0; });
+    });
+    return patch;
 }
 
 Patch hull_of(const HexMesh& mesh, const CellSet& set) {
@@ -130,7 +194,7 @@ Patch hull_of(const HexMesh& mesh, const CellSet& set) {
 }
 
 std::vector<Patch> chosen_patches(const HexMesh& mesh, const MeshSets& sets, std::span<const std::string> names) {
-    constexpr std::string_view kSet = "set:";
+    constexpr std::string_view kSet = "set:", kNodes = "nodes:";
     std::vector<Patch> patches;
     for (const std::string& name : names) {
         const bool known = std::ranges::find(sets.patches, name, &Patch::name) != sets.patches.end();
@@ -139,7 +203,11 @@ std::vector<Patch> chosen_patches(const HexMesh& mesh, const MeshSets& sets, std
             continue;
         }
         const bool is_set = !known && name.starts_with(kSet);
-        patches.push_back(is_set ? hull_of(mesh, find_set(sets, name.substr(kSet.size()))) : find_patch(sets, name));
+        if (!known && name.starts_with(kNodes)) {
+            patches.push_back(boundary_of(mesh, find_node_set(sets, name.substr(kNodes.size()))));
+        } else {
+            patches.push_back(is_set ? hull_of(mesh, find_set(sets, name.substr(kSet.size()))) : find_patch(sets, name));
+        }
         if (patches.back().sides.empty())
             throw Error(ErrorCode::InvalidInput, "no face of patch \"" + name + "\" is left", {}, "a patch with faces");
     }
@@ -160,6 +228,10 @@ MeshSets sets_of_cells(MeshSets sets, std::span<const std::uint8_t> kept) {
         std::erase_if(set.cells, [&](Index c) { return numbers[c] == kNone; });
         for (Index& c : set.cells) c = numbers[c];
     }
+    for (NodeSet& set : sets.nodes) {
+        std::erase_if(set.cells, [&](const CellCorners& at) { return numbers[at.cell] == kNone; });
+        for (CellCorners& at : set.cells) at.cell = numbers[at.cell];
+    }
     return sets;
 }
 
@@ -176,6 +248,18 @@ MeshSets sets_of_children(MeshSets sets, int levels) {
             std::vector<Index> cells;
             for (const Index cell : set.cells) {
                 for (Index k = 0; k < 8; ++k) cells.push_back(8 * cell + k);
+            }
+            set.cells = std::move(cells);
+        }
+        for (NodeSet& set : sets.nodes) {
+            std::vector<CellCorners> cells;
+            for (const auto& [cell, corners] : set.cells) {
+                for (std::size_t k = 0; k < 8; ++k) {
+                    Vec3 lower;
+                    for (std::size_t a = 0; a < 3; ++a) lower[static_cast<int>(a)] = kCornerParameters[k][a] == 0 ? 0 : .5;
+                    const std::uint8_t of_child = corners_of_part(corners, lower, lower + Vec3(.5));
+                    if (of_child != 0) cells.push_back({static_cast<Index>(8 * cell + k), of_child});
+                }
             }
             set.cells = std::move(cells);
         }
@@ -203,6 +287,18 @@ MeshSets sets_of_parts(MeshSets sets, std::span<const PartOfCell> parts) {
         std::vector<Index> cells;
         for (const Index cell : set.cells) cells.insert(cells.end(), children[cell].begin(), children[cell].end());
         std::ranges::sort(cells);
+        set.cells = std::move(cells);
+    }
+    for (NodeSet& set : sets.nodes) {
+        std::vector<CellCorners> cells;
+        for (const auto& [cell, corners] : set.cells) {
+            for (const Index child : children[cell]) {
+                const std::uint8_t of_child =
+                    corners_of_part(corners, parts[child].lower, parts[child].lower + parts[child].size);
+                if (of_child != 0) cells.push_back({child, of_child});
+            }
+        }
+        std::ranges::sort(cells, {}, &CellCorners::cell);
         set.cells = std::move(cells);
     }
     return sets;

@@ -264,21 +264,42 @@ TEST(Assemble, LabelsAtPointsGiveEachCellTheNumberOfMostOfItsPoints) {
     }
 }
 
-TEST(Assemble, FieldsWithAGapAreLeftOut) {
-    MeshFile file = file_of(make_box(2, 1, 1));
+TEST(Assemble, FieldsWithAGapAreThoseOfTheCellsThatHaveThem) {
+    MeshFile file = file_of(make_box(3, 1, 1));
     file.points.emplace_back(9, 9, 9);  // no cell uses it
     add_at_points(file, "whole", [](const Vec3& x) { return x.x == 9 ? kNan : x.x; });
-    add_at_points(file, "gap", [](const Vec3& x) { return x.x == 1 ? kNan : x.x; });
-    add_at_cells(file, "cells", {0.5, kNan});
+    add_at_points(file, "gap", [](const Vec3& x) { return x.x == 3 && x.y == 0 ? kNan : x.x; });
+    add_at_points(file, "few", [](const Vec3& x) { return x.x == 1 || x.x == 2 ? HUGE_VAL : x.x; });
+    add_at_points(file, "none", [](const Vec3&) { return kNan; });
+    add_at_cells(file, "cells", {0.5, kNan, 2});
     ReadResult result = assembled(file);
-    ASSERT_EQ(result.unread.size(), 2U);
-    EXPECT_EQ(result.unread[0].name + ": " + result.unread[0].why, "gap: the value at point 1 is not finite");
-    EXPECT_EQ(result.unread[1].name + ": " + result.unread[1].why, "cells: the value at cell 1 is not finite");
     ASSERT_EQ(result.mesh.attributes.size(), 1U);
     EXPECT_EQ(result.mesh.attributes[0].name, "whole");
-    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("2 fields left out (\"gap\", \"cells\")")));
-    file.arrays.erase(file.arrays.begin());
-    EXPECT_EQ(refusal_of(file), "made.file, array \"cells\": the value at cell 1 is not finite") << "no field is left";
+    ASSERT_EQ(result.unread.size(), 1U);
+    EXPECT_EQ(result.unread[0].name + ": " + result.unread[0].why, "none: the value at point 0 is not finite");
+    std::vector<std::string> found;
+    for (const FieldInfo& field : result.fields)
+        found.push_back(field.name + " " + std::to_string(field.missing) + " " + std::to_string(static_cast<int>(field.max)));
+    EXPECT_THAT(found, ElementsAre("whole 0 3", "gap 2 3", "few 8 3", "cells 1 2"));
+    ASSERT_EQ(result.incomplete.size(), 3U);
+    const auto missing = [&](const std::vector<double>& values) {
+        return std::ranges::count_if(values, [](double value) { return std::isnan(value); });
+    };
+    EXPECT_EQ(missing(result.incomplete[0].values), 2);
+    EXPECT_EQ(missing(result.incomplete[1].values), 8) << "what is infinite is not there";
+    EXPECT_EQ(missing(result.incomplete[2].cells), 1);
+    EXPECT_EQ(missing(result.incomplete[2].values), 0) << "at each point the mean of the cells that have a value";
+    for (std::size_t p = 0; p < 16; ++p) {
+        const double x = result.mesh.points[p].x;
+        EXPECT_EQ(result.incomplete[2].values[p], x <= 1 ? 0.5 : 2);
+    }
+    EXPECT_THAT(
+        result.warnings,
+        ElementsAre("field \"none\" left out: the value at point 0 is not finite",
+                    "3 fields (\"gap\", \"few\", \"cells\") are not everywhere; the first has no value at 2 of 16 points: "
+                    "asked for by its name, it is that of the 2 of 3 cells that have it"));
+    std::erase_if(file.arrays, [](const FileArray& array) { return array.name != "none"; });
+    EXPECT_EQ(assembled(file).mesh.cells.size(), 3U) << "a mesh without fields is one";
 }
 
 TEST(Assemble, FieldsHaveTheRangeOfTheirLengths) {
@@ -358,7 +379,7 @@ TEST(Assemble, GhostsAndHiddenPointsLeaveCellsOut) {
         if (fields == 0) add_at_points(file, "x", [](const Vec3& x) { return x.x; });
         const ReadResult result = assembled(file);
         EXPECT_EQ(volume_of(result.mesh), left) << flag;
-        EXPECT_EQ(result.unread.size(), 1 - fields) << "what a ghost has does not matter";
+        EXPECT_EQ(result.incomplete.size(), 1 - fields) << "what a ghost has does not matter";
         EXPECT_EQ(result.mesh.find_attribute(kGhostArray), nullptr);
     }
     MeshFile file = file_of(make_box(3, 1, 1));

@@ -13,6 +13,7 @@
 #include "made_files.h"
 #include "mesh_arrays.h"
 #include "sharp_groups.h"
+#include "subvol/cell.h"
 #include "subvol/mesh_sets.h"
 
 namespace subvol::detail {
@@ -285,6 +286,72 @@ TEST(SharpTags, OfOtherThanFacesAndEdgesAreRefused) {
     EXPECT_THAT(with(kInside, {0, 4}), HasSubstr("point 0, point 4: they are not an edge of a cell"));
     EXPECT_THAT(with(kInside, {13, 16}), HasSubstr("point 13, point 16: the edge lies inside the mesh"));
     EXPECT_EQ(with(kInside, {13, 14}), "no error") << "it is an edge of the sharp face";
+}
+
+/// The points of a mesh for which in(place) is true.
+template <class In>
+std::vector<Index> points_where(const HexMesh& mesh, const In& in) {
+    std::vector<Index> points;
+    const std::vector<std::uint8_t> used = used_points(file_of(mesh));
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+        if (used[p] && in(mesh.points[p])) points.push_back(p);
+    }
+    return points;
+}
+
+TEST(FileSets, PointsBetweenNodesOfASetBelongToIt) {
+    const auto on_floor = [](const Vec3& x) { return x.z == 0; };
+    const auto on_edge = [](const Vec3& x) { return x.z == 0 && x.y == 0 && x.x <= 1; };
+    for (const bool with_roof : {false, true}) {  // with it all cells are split
+        MeshFile file = house(with_roof);
+        file.node_sets = {{"floor", {}}, {"edge", {}}, {"loose", {}}, {"empty", {}}, {"all", {}}};
+        const auto loose = static_cast<Index>(file.points.size());
+        file.points.emplace_back(9, 9, 9);
+        for (Index p = 0; p < loose; ++p) {
+            if (on_floor(file.points[p])) file.node_sets[0].numbers.insert(file.node_sets[0].numbers.end(), {p, p});
+            if (on_edge(file.points[p])) file.node_sets[1].numbers.push_back(p);
+            file.node_sets[4].numbers.push_back(p);
+        }
+        file.node_sets[2].numbers = {loose};
+        const ReadResult result = assembled(file);
+        const HexMesh& mesh = result.mesh;
+        ASSERT_EQ(result.sets.nodes.size(), 3U);
+        EXPECT_THAT(result.warnings,
+                    Contains(HasSubstr("2 sets of nodes left out (\"loose\", \"empty\"): no cell has a node of it")));
+        validate(result.sets, mesh);
+        EXPECT_EQ(points_of(mesh, result.sets.nodes[0]), points_where(mesh, on_floor));
+        EXPECT_EQ(points_of(mesh, result.sets.nodes[1]), points_where(mesh, on_edge));
+        EXPECT_EQ(points_of(mesh, result.sets.nodes[2]), points_where(mesh, [](const Vec3&) { return true; }));
+        EXPECT_NEAR(area_of_patch(mesh, boundary_of(mesh, result.sets.nodes[0])), 2, kRounding);
+        EXPECT_TRUE(boundary_of(mesh, result.sets.nodes[1]).sides.empty());
+        EXPECT_EQ(chosen_patches(mesh, result.sets, std::vector<std::string>{"nodes:floor"})[0].sides.size(),
+                  boundary_of(mesh, result.sets.nodes[0]).sides.size());
+        // Children are parts of half the size: both rules agree.
+        std::vector<PartOfCell> halves;
+        for (Index c = 0; c < 8 * mesh.cells.size(); ++c) {
+            Vec3 lower;
+            for (int a = 0; a < 3; ++a) lower[a] = .5 * kCornerParameters[c % 8][static_cast<std::size_t>(a)];
+            halves.push_back({c / 8, lower, Vec3(.5)});
+        }
+        const MeshSets children = sets_of_children(result.sets, 1), parts = sets_of_parts(result.sets, halves);
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(children.nodes[k].cells, parts.nodes[k].cells);
+        EXPECT_EQ(children.nodes[2].cells.size(), 8 * mesh.cells.size());
+    }
+}
+
+TEST(FileSets, WrongSetsOfNodesAreRefused) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    const auto refused = [&](const MeshSets& sets) { return error_of([&] { validate(sets, mesh); }); };
+    EXPECT_EQ(refused({{}, {}, {{"a", {{0, 1}, {1, 255}}}}}), "no error");
+    EXPECT_THAT(refused({{}, {}, {{"a", {{2, 1}}}}}), HasSubstr("set of nodes \"a\" has cell 2 (less than 2)"));
+    EXPECT_THAT(refused({{}, {}, {{"a", {{1, 1}, {1, 2}}}}}), HasSubstr("set of nodes \"a\" has cell 1 more than once"));
+    EXPECT_THAT(refused({{}, {}, {{"a", {}}, {"a", {}}}}), HasSubstr("two sets of nodes have the name \"a\""));
+    const MeshSets sets{{{"in", {}}}, {{"core", {}}}, {{"a", {}}, {"b", {}}}};
+    EXPECT_EQ(list_of(sets), "1 patch (in), 1 set of cells (core) and 2 sets of nodes (a, b)");
+    EXPECT_EQ(list_of({{}, {}, {{"a", {}}}}), "1 set of nodes (a)");
+    EXPECT_EQ(list_of({{}, {{"core", {}}}, {{"a", {}}}}), "1 set of cells (core) and 1 set of nodes (a)");
+    EXPECT_THAT(error_of([&] { std::ignore = find_node_set(sets, "c"); }),
+                HasSubstr("there is no set of nodes \"c\" (the mesh has: a, b)"));
 }
 
 TEST(SharpTags, OfGroupsThatAreNotThereAreRefused) {

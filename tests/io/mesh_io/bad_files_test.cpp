@@ -98,8 +98,6 @@ const std::vector<Bad> kBad{
     {"58_cell_count_mismatch.vtk", "there are 7 CELL_TYPES for 8 CELLS"},
     {"59_cells_size_too_small.vtk", "cell 4 does not fit into the 40 numbers"},
     {"60_scalars_too_few.vtk", "array \"density\": value 20: unexpected end of file"},
-    {"61_point_data_count_mismatch.vtk", "POINT_DATA is for 28 points, but there are 27"},
-    {"62_nan_density.vtk", "array \"density\": the value at point 5 is not finite"},
     {"66_polydata.vtk", "POLYDATA is not a volume mesh"},
     {"67_index_out_of_range.vtk", "line 41: cell 7: there is no point with index 27"},
     {"84_offset_past_end.vtu", "line 4: array \"connectivity\": its offset 1000000000 is beyond the appended data"},
@@ -109,6 +107,12 @@ const std::vector<Bad> kBad{
     {"88_offsets_not_multiple_of_8.vtu", "the last offset is 63, but the connectivity has 64 corners"},
     {"89_entity_bomb.vtu", "line 5: array \"density\": value 0: a number is expected, not \"&a9;0\""},
     {"90_wrong_type_polydata.vtu", "line 2: \"PolyData\" is not an UnstructuredGrid"},
+};
+
+// The cells of these can be read.
+const std::vector<Bad> kBadFields{
+    {"61_point_data_count_mismatch.vtk", "POINT_DATA is for 28 points, but there are 27"},
+    {"62_nan_density.vtk", "field \"density\" has no value at 1 of 27 points"},
 };
 
 // These can be read: only the topology finds that the cells do not fit together.
@@ -159,6 +163,14 @@ TEST_F(BadFiles, FaultyFilesAreRefusedWithFileAndPlace) {
     }
 }
 
+TEST_F(BadFiles, FieldsThatCannotBeReadLeaveTheCells) {
+    for (const auto& bad : kBadFields) {
+        const ReadResult result = read_mesh(bad_folder() / bad.file);
+        EXPECT_EQ(result.mesh.cells.size(), 8U) << bad.file;
+        EXPECT_THAT(result.warnings, testing::Contains(HasSubstr(bad.message))) << bad.file;
+    }
+}
+
 TEST_F(BadFiles, CellsThatDoNotFitTogetherAreRefused) {
     for (const auto& bad : kBadTopology) {
         const ReadResult result = read_mesh(bad_folder() / bad.file);
@@ -171,7 +183,7 @@ TEST_F(BadFiles, EveryFileIsListedHere) {
     for (const auto& entry : std::filesystem::directory_iterator(bad_folder())) {
         files += entry.path().extension() != ".md";
     }
-    EXPECT_EQ(files, kGood.size() + kBad.size() + kBadTopology.size());
+    EXPECT_EQ(files, kGood.size() + kBad.size() + kBadFields.size() + kBadTopology.size());
 }
 
 }  // namespace bad_files_test

@@ -252,11 +252,13 @@ TEST_F(Ensight, PlacesWithoutValuesHaveNone) {
         write("a.T10", variable("UNDEF"));
         const ReadResult all = read_mesh(path("a.case"));
         EXPECT_EQ(all.mesh.find_attribute("T"), nullptr);
-        EXPECT_THAT(all.warnings, Contains(HasSubstr("field \"T\" left out: the value at node 5 is not finite")));
+        EXPECT_THAT(all.warnings, Contains(HasSubstr("field \"T\" has no value at ")));
+        EXPECT_TRUE(std::isnan(all.incomplete.at(0).values[4]));
+        EXPECT_EQ(all.incomplete.at(0).values[5], 3);
         EXPECT_NE(all.mesh.find_attribute("U"), nullptr);
         write("a.T10", variable(""));
         EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"left"}}).mesh.find_attribute("T")->values[4], -999);
-        EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"right"}}).unread[0].name, "T");
+        EXPECT_EQ(read_mesh(path("a.case"), {.blocks = {"right"}}).incomplete.at(0).name, "T");
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "exodus_texts.h"
 #include "subvol/mesh_io.h"
 
@@ -16,8 +18,12 @@ inline void expect_two_blocks(const ReadResult& result, const HexMesh& box) {
     EXPECT_EQ(result.mesh.cells, box.cells);
     EXPECT_THAT(result.warnings,
                 testing::ElementsAre("the file has 2 steps; the last one is read",
-                                     "array \"only one\" is not in every block: ignored", HasSubstr("cell array \"c\"")));
-    ASSERT_EQ(result.fields.size(), 5u);
+                                     HasSubstr("field \"only one\" has no value at "), HasSubstr("cell array \"c\"")));
+    ASSERT_EQ(result.fields.size(), 6u);
+    ASSERT_EQ(result.incomplete.size(), 1u);
+    EXPECT_EQ(result.incomplete[0].cells.front(), 5);
+    EXPECT_TRUE(std::isnan(result.incomplete[0].cells.back()));
+    EXPECT_EQ(result.incomplete[0].values.front(), 5) << "at points the mean of the cells that have a value";
     EXPECT_EQ(result.mesh.find_attribute("T")->values, count_from(3 + static_cast<double>(points), points));
     EXPECT_EQ(result.mesh.find_attribute("D_y")->values,
               count_from(5 + static_cast<double>(points), points));  // there is no D_z

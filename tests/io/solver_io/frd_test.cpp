@@ -184,7 +184,24 @@ TEST_F(Frd, WrongFilesGetASentenceWithTheLine) {
     EXPECT_THAT(error(bad), HasSubstr("line 1: the format of the list is \"4\" (0 and 1 are text, 2 and 3 are binary"));
     EXPECT_THAT(error(nodes + elements + result_of("T", 9, 1, 0, 1, 1)), HasSubstr("there is no node 9"));
     const ReadResult partial = read(nodes + elements + result_of("T", 7, 1, 0, 1, 1));
-    EXPECT_THAT(partial.warnings, ElementsAre("result \"T\" is not at node 8: ignored"));
+    EXPECT_THAT(partial.warnings,
+                ElementsAre("field \"T\" has no value at 1 of 8 nodes, and no cell has it at all of its points"));
+    EXPECT_EQ(partial.fields.at(0).min, -7);
+}
+
+// As *EL FILE, NSET=…: a result of the first nodes alone. Nodes are numbered along x, then y, then z.
+TEST_F(Frd, ResultsAtSomeNodesAreThoseOfTheElementsThere) {
+    const HexMesh mesh = make_box(1, 1, 3);
+    const ReadResult result =
+        read(nodes_of(mesh) + elements_of(mesh) + result_of("S", 12, 1, 0, 1, 1) + result_of("T", 16, 1, 0, 1, 2));
+    ASSERT_EQ(result.mesh.attributes.size(), 1U);
+    ASSERT_EQ(result.incomplete.size(), 1U);
+    EXPECT_EQ(result.incomplete[0].name, "S");
+    EXPECT_EQ(result.incomplete[0].values[11], -12);
+    EXPECT_TRUE(std::isnan(result.incomplete[0].values[12]));
+    EXPECT_THAT(result.warnings,
+                ElementsAre("field \"S\" has no value at 4 of 16 nodes: asked for by its name, it is that of the "
+                            "2 of 3 cells that have it"));
 }
 
 using FrdFuzz = MeshFuzz;

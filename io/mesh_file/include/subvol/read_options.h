@@ -23,6 +23,8 @@ struct FieldInfo {
     double min = 0;         ///< least of its finite values, for vectors of their lengths
     double max = 0;         ///< greatest of its finite values, for vectors of their lengths
     std::string unit = {};  ///< empty where the file does not have it
+    /// At how many points of the file, or cells of the mesh, it has no value; 0 for the fields of `ReadResult::mesh`
+    std::size_t missing = 0;
 };
 
 /// How to read tetrahedra, prisms and pyramids.
@@ -156,6 +158,9 @@ struct ReadResult {
     /// of the hexahedra
     Shells shells = {};
     std::vector<UnreadField> unread = {};  ///< fields that could not be read; a warning names them
+    /// Fields that some points or cells lack, NaN there; a warning names them. They are not attributes of the mesh, whose
+    /// values are finite; `fields` has them, too
+    std::vector<Attribute> incomplete = {};
     /// Patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
     MeshSets sets = {};
 };

@@ -14,14 +14,15 @@ namespace subvol {
 /// A part of space, the cells where a quantity is not 0, those of named sets, or those whose limit folds:
 ///
 ///     box:x0,y0,z0,x1,y1,z1    sphere:x,y,z,r    half:px,py,pz,nx,ny,nz    where:T>500    set:rotor,stator
-///     fold:folded,open
+///     fold:folded,open    nodes:fixed
 ///
 /// half: the side of the plane through p that the normal n points to
 /// where: a quantity as for `field_of`. A cell belongs to the region if it is not 0 at half of its corners or more
+/// nodes: the cells that have a point of these sets of nodes
 /// fold: the cells with one of these verdicts of `check_folds`, of the scheme MCQ
 class Region {
 public:
-    enum class Kind { Box, Sphere, Half, Where, Set, Fold };
+    enum class Kind { Box, Sphere, Half, Where, Set, Fold, Nodes };
 
     /// throws: Error(InvalidInput) if the text does not say a region, or one without volume
     Region(const std::string& text);
@@ -29,7 +30,7 @@ public:
     [[nodiscard]] Kind kind() const { return kind_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     /// Whether it consists of whole cells, not of a part of space.
-    [[nodiscard]] bool chooses_cells() const { return kind_ == Kind::Where || kind_ == Kind::Set || kind_ == Kind::Fold; }
+    [[nodiscard]] bool chooses_cells() const { return kind_ != Kind::Box && kind_ != Kind::Sphere && kind_ != Kind::Half; }
     /// About how far inside a part of space a place lies (world), negative outside. It is exact near the faces, and changes
     /// by no more than the distance between two places.
     [[nodiscard]] double depth(const Vec3& place) const;
@@ -40,7 +41,7 @@ public:
     [[nodiscard]] const Vec3& point() const { return point_; }
     /// Of a sphere (world).
     [[nodiscard]] double radius() const { return radius_; }
-    /// The quantity of `where`; the names of `set` and `fold`, with commas between.
+    /// The quantity of `where`; the names of `set`, `nodes` and `fold`, with commas between.
     [[nodiscard]] const std::string& quantity() const { return quantity_; }
 
 private:

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fields that a file names and lacks, at all, at some nodes or at some steps: what needs no field works, and what is there is used."""
+
+import csv
+import math
+import shutil
+import unittest
+
+from command import InFolder, subvol
+from patches_test import CELLS, POINTS, netcdf, write_foam
+
+# A bar of three unit cubes along z, and the nodes in the middle of their edges.
+CORNERS = [(x, y, z) for z in range(4) for y in range(2) for x in range(2)]
+AROUND = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4)]
+
+
+def bulged(x, y, z):
+    """A place of the bar whose sides are curved: no cell is straight, and fields of the place are known."""
+    return x + 0.1 * math.sin(math.pi * z / 3) * (2 * x - 1), y, z
+
+
+def bar(curved):
+    """The nodes and the elements of the bar."""
+    nodes, cells = list(CORNERS), []
+    for c in range(3):
+        corners = [(x, y, z + c) for x, y, z in AROUND]
+        cell = [nodes.index(p) for p in corners]
+        for a, b in EDGES if curved else []:
+            middle = tuple((p + q) / 2 for p, q in zip(corners[a], corners[b]))
+            if middle not in nodes:
+                nodes.append(middle)
+            cell.append(nodes.index(middle))
+        cells.append(cell)
+    return [bulged(*p) for p in nodes] if curved else nodes, cells
+
+
+def frd(nodes, cells, steps):
+    """steps: for each a list of results (name, values by node)"""
+    lines = ["    1C", f"    2C{'':18}{len(nodes):12}{'':37}1"]
+    lines += [f" -1{n:10}" + "".join(f"{v:12.5E}" for v in p) for n, p in enumerate(nodes, 1)]
+    lines += [" -3", f"    3C{'':18}{len(cells):12}{'':37}1"]
+    for c, cell in enumerate(cells, 1):
+        lines.append(f" -1{c:10}{4 if len(cell) > 8 else 1:5}    0    1")
+        lines += [" -2" + "".join(f"{n + 1:10}" for n in cell[k:k + 10]) for k in range(0, len(cell), 10)]
+    lines.append(" -3")
+    for step, results in enumerate(steps, 1):
+        for name, values in results:
+            lines += [f"  100CL  101{step:12.5E}{len(values):12}{'':21}{step:4}           1", f" -4  {name:8}    2    1",
+                      " -5  C           1    2    0    0", " -5  ALL         1    2    0    0    1ALL"]
+            lines += [f" -1{n + 1:10}{v:12.5E}" for n, v in values.items()] + [" -3"]
+    return "\n".join(lines + [" 9999", ""])
+
+
+def heights(nodes, below=99):
+    return {n: z for n, (_, _, z) in enumerate(nodes) if z <= below}
+
+
+class MissingFileTest(InFolder):
+    def setUp(self):
+        super().setUp()
+        points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+        (self.folder / "a.case").write_text("FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: T gone.scl\n")
+        (self.folder / "a.geo").write_text("a\nb\nnode id off\nelement id off\npart\n         1\nbody\ncoordinates\n         8\n" + "".join(
+            f"{p[a]:12.5e}\n" for a in range(3) for p in points) + "hexa8\n         1\n" + "".join(f"{n:10}" for n in range(1, 9)) + "\n")
+
+    def test_what_needs_no_field_works_with_one_warning_that_names_the_variable_and_its_file(self):
+        for words in (["info", "a.case"], ["check", "a.case"], ["surface", "a.case", "--boundary", "-o", "b.ply"],
+                      ["vdb", "a.case", "--sdf", "--resolution", "8", "-o", "b.vdb"],
+                      ["render", "a.case", "-o", "a.png", "--size", "32x32"], ["probe", "a.case", "--stats"],
+                      ["subdivide", "a.case", "-o", "a.vtu"]):
+            with self.subTest(words[0]):
+                done = self.run_ok(*words)
+                named = [line for line in done.err.splitlines() if "gone.scl" in line]
+                self.assertEqual(len(named), 1, done.err)
+                self.assertIn('field "T" left out: a.case, line 6: there is no file "gone.scl"', named[0])
+
+    def test_what_needs_the_field_says_that_it_is_not_there(self):
+        for words in (["probe", "a.case", "--stats", "--field", "T"], ["probe", "a.case", "--at", ".5,.5,.5", "--field", "2*T+1"],
+                      ["render", "a.case", "-o", "a.png", "--color-field", "T"], ["vdb", "a.case", "-o", "a.vdb", "--fields", "d=abs(T)"],
+                      ["subdivide", "a.case", "-o", "a.vtu", "--field", "T"]):
+            with self.subTest(" ".join(words)):
+                done = subvol(*words, folder=self.folder)
+                self.assertEqual(done.code, 2)
+                self.assertIn("field 'T': a.case, line 6: there is no file \"gone.scl\"", done.err)
+        done = subvol("probe", "a.case", "--stats", "--field", "T2", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn('there is no field "T2"', done.err)
+
+
+class MissingNodesTest(InFolder):
+    def test_a_result_of_a_set_of_nodes_is_that_of_the_elements_that_have_it_all(self):
+        for curved in False, True:
+            with self.subTest(curved=curved):
+                nodes, cells = bar(curved)
+                (self.folder / "a.frd").write_text(frd(nodes, cells, [[("S", heights(nodes, 2)), ("T", heights(nodes))]]))
+                info = self.run_ok("info", "a.frd", "--json").json()
+                fields = {field["name"]: field for field in info["fields"]}
+                self.assertEqual((fields["S"]["min"], fields["S"]["max"], fields["T"]["max"]), (0, 2, 3))
+                self.assertGreaterEqual(fields["S"]["missing"], 4)
+                self.assertNotIn("missing", fields["T"])
+                self.assertIn("lack it", self.run_ok("info", "a.frd").out)
+                two, all_ = (self.run_ok("probe", "a.frd", "--stats", "--scheme", "linear", "--field", name, "--json").json()
+                             for name in ("S", "T"))
+                self.assertLess(two["cells_with_field"], info["cells"])
+                self.assertIn("asked for by its name, it is that of the", " ".join(two["warnings"]))
+                # The section is 1, or 1 + 0.2 sin(πz/3), which the elements have as quadratic functions.
+                bulge, delta = (0.2, 2e-3) if curved else (0, 1e-9)
+                for stats, top in (two["stats"], 2), (all_["stats"], 3):
+                    a = math.pi / 3
+                    volume = top + bulge / a * (1 - math.cos(a * top))
+                    moment = top * top / 2 + bulge * (math.sin(a * top) / a - top * math.cos(a * top)) / a
+                    self.assertAlmostEqual(stats["whole"]["volume"], volume, delta=delta)
+                    self.assertAlmostEqual(stats["whole"]["fields"][0]["mean"], moment / volume, delta=delta)
+                at = self.run_ok("probe", "a.frd", "--at", ".5,.5,1.75", "--at", ".5,.5,2.5", "--field", "10*S", "--json").json()
+                self.assertAlmostEqual(at["values"][0]["value"], 17.5, delta=1e-5)
+                self.run_ok("render", "a.frd", "-o", "a.png", "--size", "32x32", "--field", "S")
+
+    def test_a_result_that_no_element_has_whole_is_named_and_refused_where_it_is_needed(self):
+        nodes, cells = bar(False)
+        (self.folder / "a.frd").write_text(frd(nodes, cells, [[("S", {n: 7 + n for n in range(4)})]]))
+        done = self.run_ok("info", "a.frd")
+        self.assertIn('field "S" has no value at 12 of 16 nodes, and no cell has it at all of its points', done.err)
+        self.assertRegex(done.out, r"S +at points +7 … 10; 12 lack it")
+        self.run_ok("render", "a.frd", "-o", "a.png", "--size", "32x32")
+        done = subvol("render", "a.frd", "-o", "a.png", "--field", "S", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("no cell has 'S' at all of its points", done.err)
+
+
+class MissingBlocksTest(InFolder):
+    def test_a_variable_of_one_block_is_that_of_its_cells(self):
+        """As MOOSE restricts variables to blocks: of three cubes the last two have it."""
+        blocks = CELLS[:1], CELLS[1:]
+        (self.folder / "a.exo").write_bytes(netcdf(
+            {"num_dim": 3, "num_nodes": len(POINTS), "num_elem": 3, "num_el_blk": 2, "num_el_in_blk1": 1, "num_el_in_blk2": 2,
+             "num_nod_per_el1": 8, "num_nod_per_el2": 8, "time_step": 1, "num_elem_var": 3, "len": 8},
+            [("coord" + "xyz"[a], ["num_nodes"], "d", [p[a] for p in POINTS]) for a in range(3)] +
+            [(f"connect{b + 1}", [f"num_el_in_blk{b + 1}", f"num_nod_per_el{b + 1}"], "i", [n + 1 for cell in cells for n in cell])
+             for b, cells in enumerate(blocks)] +
+            [("time_whole", ["time_step"], "d", [1.5]),
+             ("name_elem_var", ["num_elem_var", "len"], "c", b"".join(n.ljust(8, b"\0") for n in (b"flux", b"all", b"none"))),
+             ("vals_elem_var1eb2", ["time_step", "num_el_in_blk2"], "d", [3, 5]),
+             ("vals_elem_var2eb1", ["time_step", "num_el_in_blk1"], "d", [1]),
+             ("vals_elem_var2eb2", ["time_step", "num_el_in_blk2"], "d", [3, 5])]))
+        done = self.run_ok("info", "a.exo", "--json").json()
+        self.assertEqual({f["name"]: (f["min"], f["max"], f.get("missing")) for f in done["fields"]},
+                         {"flux": (3, 5, 1), "all": (1, 5, None)})
+        self.assertIn('array "none" is not in the blocks that are read', " ".join(done["warnings"]))
+        for more, mean in ([], 4), (["--cell-values", "constant"], 4):
+            done = self.run_ok("probe", "a.exo", "--stats", "--field", "flux", "--scheme", "linear", "--json", *more).json()
+            self.assertEqual(done["cells_with_field"], 2)
+            self.assertAlmostEqual(done["stats"]["whole"]["volume"], 2, delta=1e-9)
+            self.assertAlmostEqual(done["stats"]["whole"]["fields"][0]["mean"], mean, delta=1e-9)
+
+
+class MissingStepsTest(InFolder):
+    def setUp(self):
+        super().setUp()
+        nodes, cells = bar(False)
+        with_s = [("T", heights(nodes)), ("S", {n: 2 * z for n, z in heights(nodes).items()})]
+        (self.folder / "a.frd").write_text(frd(nodes, cells, [with_s[:1], with_s, with_s[:1], with_s[:1], with_s]))
+        self.left_out = "steps 0, 2 to 3 left out: "
+
+    def test_a_table_has_the_steps_that_have_the_field(self):
+        for more in (["--stats"], ["--at", ".5,.5,1"]):
+            for quantity, value in ("S", 3), ("S+T", 4.5):
+                with self.subTest(more=more, quantity=quantity):
+                    done = self.run_ok("probe", "a.frd", *more, "--field", quantity, "--step", "all", "--scheme", "linear", "-o", "a.csv")
+                    self.assertIn(self.left_out, done.err)
+                    rows = list(csv.reader((self.folder / "a.csv").read_text().splitlines()))[1:]
+                    self.assertEqual([row[0] for row in rows], ["1", "4"])
+                    at = 4 if "--stats" in more else 3
+                    self.assertAlmostEqual(float(rows[0][at]), value if "--stats" in more else 2 * value / 3, delta=1e-9)
+
+    def test_pictures_grids_and_kernels_of_the_steps_that_have_it(self):
+        for words, ending in ((["render", "--size", "32x32"], "png"), (["vdb", "--resolution", "6"], "vdb"), (["points"], "ply")):
+            with self.subTest(words[0]):
+                done = self.run_ok(words[0], "a.frd", *words[1:], "--field", "S", "--step", "all", "-o", f"a_#.{ending}")
+                self.assertIn(self.left_out, done.err)
+                self.assertEqual(sorted(p.name for p in self.folder.glob(f"a_?.{ending}")), [f"a_1.{ending}", f"a_4.{ending}"])
+        done = self.run_ok("render", "a.frd", "--size", "32x32", "--field", "S", "--step", "all", "-o", "a_#.png", "--json").json()
+        self.assertEqual((done["outputs"], done["frames"], done["times"]), (["a_1.png", "a_4.png"], 2, [2, 5]))
+
+    def test_a_field_of_no_step_is_an_error(self):
+        for words in (["probe", "a.frd", "--stats"], ["render", "a.frd", "-o", "a_#.png"], ["vdb", "a.frd", "-o", "a_#.vdb"],
+                      ["points", "a.frd", "-o", "a_#.ply"]):
+            with self.subTest(words[0]):
+                done = subvol(*words, "--step", "all", "--field", "nope", folder=self.folder)
+                self.assertEqual(done.code, 2)
+                self.assertIn('there is no field "nope"', done.err)
+
+
+class SeriesWarningsTest(InFolder):
+    def test_what_differs_in_numbers_alone_is_said_once(self):
+        write_foam(self.folder / "case")
+        for step in range(1, 6):
+            shutil.copytree(self.folder / "case" / "0", self.folder / "case" / str(step))
+            values = " ".join(str(k * step * step + math.sin(step * k)) for k in range(3))
+            (self.folder / "case" / str(step) / "T").write_text(
+                "FoamFile\n{\n version 2.0;\n format ascii;\n class volScalarField;\n object T;\n}\ndimensions [0 0 0 0 0 0 0];\n"
+                f"internalField nonuniform List<scalar> 3({values});\nboundaryField {{ left {{ type fixedValue; value uniform {step}; }} }}\n")
+        words = ["probe", "case", "--stats", "--field", "T", "--step", "1-5"]
+        done = self.run_ok(*words, "-o", "a.csv")
+        warnings = [line for line in done.err.splitlines() if line.startswith("subvol: warning:")]
+        self.assertEqual(len([w for w in warnings if "became values at points" in w]), 1, done.err)
+        self.assertRegex(done.err, r"\d+ more warnings of other steps differ from these in numbers alone; --json has all")
+        self.assertEqual(len([w for w in self.run_ok(*words, "--json").json()["warnings"] if "became values at points" in w]), 5)
+        self.assertLessEqual(len(done.err.splitlines()), len(warnings) + 4)
+
+
+if __name__ == "__main__":
+    unittest.main()
