@@ -224,7 +224,7 @@ private:
         } catch (const Error&) {
             if (!arrays_.leaves_out()) throw;
             found_.warnings.push_back("the rest of the file is left out (" + begin.place_of(begin.position()) +
-                                      "): there are not as many values as CELL_DATA or POINT_DATA says");
+                                      "): there are not as many values as CELL_DATA says");
             return false;
         }
         return true;
@@ -348,9 +348,11 @@ private:
         const std::size_t count = in_.count({at_cells ? "CELL_DATA" : "POINT_DATA"});
         if (count == tuples) return arrays_.start_data(at_cells, tuples);
         if (block_) block_->expect_cells(in_);  // a flat one has no cells that values could be at
-        arrays_.start_data(at_cells, count,
-                           in_.place_of(in_.position()) + (at_cells ? ": CELL_DATA is for " : ": POINT_DATA is for ") +
-                               std::to_string(count) + " " + what + ", but there are " + std::to_string(tuples));
+        const std::string wrong = (at_cells ? "CELL_DATA is for " : "POINT_DATA is for ") + std::to_string(count) + " " + what +
+                                  ", but there are " + std::to_string(tuples);
+        // Values of points that are not those of the file put its points in doubt.
+        if (!at_cells) in_.fail(wrong);
+        arrays_.start_data(at_cells, count, in_.place_of(in_.position()) + ": " + wrong);
     }
 
     TextScanner in_;
