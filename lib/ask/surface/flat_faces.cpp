@@ -60,7 +60,8 @@ private:
 
     /// Whether the points about a face lie in its plane, and the fields are there as linear as between its diagonals.
     [[nodiscard]] bool is_planar(Index face) const {
-        const auto& [a, b, c, d] = surface_.faces[face];
+        const auto& corners = surface_.faces[face];
+        const Index a = corners[0], b = corners[1], c = corners[2], d = corners[3];
         const Vec3 u = places_[c] - places_[a], v = places_[d] - places_[b], normal = glm::cross(u, v);
         const double area = glm::length(normal);
         if (!(area > 0)) return false;
