@@ -234,8 +234,7 @@ public:
         streams_.add_to(app());
         add_patches(
             "draw this patch of the boundary alone, as info lists them, or the hull of a set of cells, set:NAME, or the faces "
-            "between "
-            "those of nodes, nodes:NAME (repeatable; "
+            "between those of nodes, nodes:NAME (repeatable; "
             "all); "
             "coloured by patch, or by --field");
         add_part_opacities(

@@ -201,8 +201,7 @@ private:
     [[nodiscard]] std::string way_from_others(std::string_view first) const {
         if (upper_case(first) == "MESH") {
             return "meshes of GiD begin so, which neither meshio, VTK nor Gmsh reads: export another format from GiD, such as "
-                   "one "
-                   "of docs/formats.md";
+                   "one of docs/formats.md";
         }
         if (first.starts_with('(')) {
             const std::string name = std::filesystem::path(file_).filename().string();

@@ -115,6 +115,8 @@ public:
         for (auto& part : deck_.parts) {
             expand_ranges(part.second.sets, [&] { return elements_of(part.first); });
             expand_ranges(part.second.node_sets, [&] { return nodes_of(part.first); });
+            for (auto* sets : {&part.second.sets, &part.second.node_sets})
+                std::erase_if(*sets, [](const auto& set) { return set.second.left_out; });
         }
         count_instances();
     }
@@ -533,8 +535,9 @@ private:
 
     void leave_out_set(const std::string& why) {
         const bool of_nodes = kind_ == &InpPart::node_sets;
-        (of_nodes ? deck_.node_sets_left_out : deck_.sets_left_out)
-            .add(values_[of_nodes ? "NSET" : "ELSET"], in_->place_of(position_) + ": " + why);
+        const std::string& name = values_[of_nodes ? "NSET" : "ELSET"];
+        (of_nodes ? deck_.node_sets_left_out : deck_.sets_left_out).add(name, in_->place_of(position_) + ": " + why);
+        if (!name.empty()) set_of(name).left_out = true;
         section_ = Section::Other;
     }
 
@@ -559,7 +562,7 @@ private:
             if (const auto number = number_in(field)) {
                 set_of(name).numbers.push_back(*number);
             } else if (!add_set(name, name_of(field))) {
-                leave_out_set("there is no set " + in_quotes(std::string(field)));
+                return leave_out_set("there is no set " + in_quotes(std::string(field)));
             }
         }
     }
@@ -599,7 +602,7 @@ private:
             if (sets == deck_.parts.end()) return nullptr;
             const auto& all = sets->second.*kind_;
             const auto found = all.find(upper_case(member));
-            return found == all.end() ? nullptr : &found->second;
+            return found == all.end() || found->second.left_out ? nullptr : &found->second;
         };
         const InpSet* other = in(scope_);
         for (const InpInstance& instance : deck_.instances) {

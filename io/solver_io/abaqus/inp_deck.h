@@ -28,6 +28,7 @@ struct InpSet {
     std::string name;  ///< as it is written first
     std::vector<std::int64_t> numbers;
     std::vector<std::array<std::int64_t, 3>> ranges;  ///< from, to, and the step between
+    bool left_out = false;                            ///< not all of it can be read
 };
 
 /// Sides of elements.
