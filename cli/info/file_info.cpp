@@ -54,7 +54,7 @@ std::unique_ptr<FileInfo> make_file_info(const InfoRequest& request) {
         std::string option;
     };
     for (const auto& [asked, option] : {OfOnePiece{request.tets.asked(), "--scheme"}, OfOnePiece{request.folds, "--folds"},
-                                        OfOnePiece{request.limit, "--limit"}}) {
+                                        OfOnePiece{request.limit, "--limit"}, OfOnePiece{request.ignored, "--ignored"}}) {
         if (asked && !in_one_piece)
             throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", option, "no " + option);
     }

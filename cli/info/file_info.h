@@ -23,6 +23,7 @@ struct InfoRequest {
     const CommonOptions& common;        ///< of reading; --field limits what is listed
     std::string input;                  ///< the file
     bool lists_fields = false;          ///< the names of fields alone
+    bool ignored = false;               ///< the parts of the file that were not taken alone
     bool folds = false;                 ///< whether the limit folds
     bool limit = false;                 ///< volume and box of the limit
     bool devices = false;               ///< those of OpenGL, too

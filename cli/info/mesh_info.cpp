@@ -12,6 +12,7 @@
 #include "steps.h"
 #include "subvol/certificate.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/mesh_report.h"
 #include "text.h"
 
@@ -34,6 +35,8 @@ public:
         const ShellsAlone alone = request().share ? ShellsAlone::Refuse : ShellsAlone::Take;
         report["input"] = request().input;
         ReadResult read = report.unpack(read_input(request().input, request().common, report.progress(), alone));
+        put_ignored(read.ignored, report);
+        if (request().ignored) return list_ignored(read.ignored, report);
         read.fields = chosen_fields(read, request().common);
         if (!is_model(request().input)) put_steps(read, report);
         detail::MeshShare about;
@@ -91,6 +94,23 @@ private:
         if (!read.mesh.sharp_faces.empty()) report["sharp_faces"] = read.mesh.sharp_faces.size();
     }
 
+    static void put_ignored(const std::vector<IgnoredPart>& parts, Report& report) {
+        report["ignored"] = Json::array();
+        for (const IgnoredPart& part : parts) {
+            Json one{{"kind", part.kind}, {"name", detail::printable(part.name)}, {"count", part.count}};
+            if (!part.reason.empty()) one["reason"] = part.reason;
+            report["ignored"].push_back(std::move(one));
+        }
+    }
+
+    static void list_ignored(const std::vector<IgnoredPart>& parts, Report& report) {
+        for (const IgnoredPart& part : parts)
+            report.answer(text(part.kind, "  ", detail::printable(part.name), "  ", part.count, part.reason.empty() ? "" : "  ",
+                               part.reason));
+        if (parts.empty()) report.note("the reader knows of no part of the file that is not taken");
+        report.all_said();
+    }
+
     static void put_fields(const ReadResult& read, Report& report) {
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
@@ -126,7 +146,7 @@ private:
         const MeshSeries series = open_series(request().input);
         const std::size_t step = one_step(request().input, request().common).value_or(series.size() - 1);
         report["steps"] = series.size();
-        report["times"] = series.times;
+        report["times"] = series.size() == 1 && read.mesh.time ? std::vector<double>{*read.mesh.time} : series.times;
         report["step"] = step;
         report["blocks"] = Json::array();
         for (const MeshBlock& block : read.blocks) {

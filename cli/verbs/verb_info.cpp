@@ -38,12 +38,19 @@ public:
                "  subvol info --gl\n"
                "\n"
                "JSON: blocks and sets, each with name, cells (those that it consists of after the splitting; blocks also "
-               "elements, as the file counts them) and volume, as of the whole; node_sets with name and nodes. With --folds: "
+               "elements, as the file counts them) and volume, as of the whole; node_sets with name and nodes; ignored, the "
+               "parts "
+               "of the file that are not taken, each with kind, name, count and, where the reader knows it, reason. With "
+               "--folds: "
                "folds, with verdict, cells "
                "{proved, folded, undecided, irregular} and open_volume, as of "
                "check.") {
         add_input(app(), "FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));
         add_option(app(), Option("list-fields", list_fields_).help("print the names of a mesh's fields only, one a line"));
+        add_option(
+            app(),
+            Option("ignored", ignored_)
+                .help("print the parts of a mesh's file that are not taken only, one a line: kind, name, how many, why"));
         add_option(
             app(),
             Option("folds", folds_).help("how many cells are proved not to fold in the limit of MCQ (check: where they fold)"));
@@ -75,6 +82,7 @@ public:
                             .common = common(),
                             .input = input_,
                             .lists_fields = list_fields_,
+                            .ignored = ignored_,
                             .folds = folds_,
                             .limit = limit_,
                             .devices = gl_,
@@ -100,7 +108,8 @@ private:
     void describe_devices_alone(Report& report) {
         if (ranks() != nullptr)
             throw Error(ErrorCode::InvalidInput, "only the figures of a mesh are found in several processes", "info");
-        refuse_options(app(), {"--list-fields", "--folds", "--limit", "--scheme", "--at", "--part"}, "is about a FILE");
+        refuse_options(app(), {"--list-fields", "--ignored", "--folds", "--limit", "--scheme", "--at", "--part"},
+                       "is about a FILE");
         if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
         describe_devices(report);
     }
@@ -128,7 +137,7 @@ private:
     }
 
     std::string input_;
-    bool gl_ = false, folds_ = false, limit_ = false, list_fields_ = false;
+    bool gl_ = false, folds_ = false, limit_ = false, list_fields_ = false, ignored_ = false;
     std::vector<std::string> places_;  // of --at
     RefineArguments refine_;           // of --scheme
     ShareArgument share_;

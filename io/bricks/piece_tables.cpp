@@ -353,7 +353,7 @@ private:
         tables.hash = hash.value();
         for (const auto& [array, parts] : survey_.arrays) {
             if (parts != survey_.pieces() && survey_.is_field(array)) {
-                survey_.warnings.push_back(not_everywhere(array.name, files_.word));
+                survey_.warnings.push_back(ignored_text(not_everywhere(array.name, files_.word)));
             }
         }
         if (survey_.pieces() > 1) survey_.warnings.push_back(joining_report(survey_.pieces(), files_.word, joined_, by, order));

@@ -179,7 +179,7 @@ public:
                 result_.unread.push_back(std::move(field));
             }
         }
-        left_out.report("field", "fields", result_.warnings);
+        left_out.report("field", "fields", result_.warnings, result_.ignored);
         if (!incomplete_.empty()) {
             result_.warnings.push_back((incomplete_.size() == 1
                                             ? "field " + listed(incomplete_) + " has no value at "
@@ -548,21 +548,25 @@ std::string list_of_shells(std::size_t quads, std::size_t lines) {
     return of_quads + (of_quads.empty() || of_lines.empty() ? "" : " and ") + of_lines;
 }
 
+/// Notes the quads and lines that are not taken. into: a MeshFile or ReadResult
+template <class Contents>
+void ignore_shells(std::size_t quads, std::size_t lines, const std::string& reason, Contents& into) {
+    if (quads + lines == 0) return;
+    into.warnings.push_back(list_of_shells(quads, lines) + " ignored: " + reason);
+    if (quads > 0) into.ignored.push_back({"shells", "quads", quads, reason});
+    if (lines > 0) into.ignored.push_back({"shells", "lines", lines, reason});
+}
+
 /// After the mesh is complete. moved: whether its points are not those of the file
 void take_shells(MeshFile& found, ReadResult& result, const Origin& origin, bool moved) {
     std::size_t quads = found.quads.corners.size(), lines = found.lines.corners.size();
     if (quads + lines == 0) return;
-    if (moved || origin.sources || !result.cell_means.empty()) {
-        result.warnings.push_back(list_of_shells(quads, lines) +
-                                  " ignored: shells and beams are read beside hexahedra that are not split");
-        return;
-    }
+    if (moved || origin.sources || !result.cell_means.empty())
+        return ignore_shells(quads, lines, "shells and beams are read beside hexahedra that are not split", result);
     HexMesh with = result.mesh;
     quads = drop_unusable(found.quads, with);
     lines = drop_unusable(found.lines, with);
-    if (quads + lines > 0) {
-        result.warnings.push_back(list_of_shells(quads, lines) + " ignored: they repeat a point, or its values are not finite");
-    }
+    ignore_shells(quads, lines, "they repeat a point, or its values are not finite", result);
     for (std::size_t a = 0; a < found.arrays.size(); ++a) {
         if (found.arrays[a].at_cells) set_means(with, a, found.arrays[a], found, origin.used);
     }
@@ -619,7 +623,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         weld_points(found, *options.weld, file, names_in_file);
         if (options.other_cells == OtherCells::Split && found.curved.size() == 0) join_hanging_points(found);
         const auto [quads, lines] = drop_parts_of_cells(found, options.shells_alone);
-        if (quads + lines > 0) found.warnings.push_back(list_of_shells(quads, lines) + " ignored: parts of cells");
+        ignore_shells(quads, lines, "parts of cells", found);
     }
     EntityNames names = names_in_file;
     std::optional<CurvedReport> curved;
@@ -634,6 +638,8 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     result.mesh.points = std::move(found.points);
     result.mesh.cells = std::move(found.hexes.corners);
     result.warnings = std::move(found.warnings);
+    result.ignored = std::move(found.ignored);
+    result.mesh.time = found.time;
     result.blocks = std::move(found.blocks);
     result.curved = curved;
     MixedCells others = take_others(found);
@@ -658,7 +664,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
         FileSetsOfMesh sets =
-            sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result.warnings);
+            sets_of_mesh(result.mesh, found, origin.cell_numbers, origin.sources ? &*origin.sources : nullptr, result);
         result.sets = std::move(sets.sets);
         take_faces(found, std::move(sets.sides), result.on_patches);
         if (!moved && !origin.sources) {

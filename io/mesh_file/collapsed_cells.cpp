@@ -62,7 +62,10 @@ public:
         take_from(found_.pyramids);
         take_from(found_.tets);
         if (other_cells == OtherCells::Ignore) {
-            if (collapsed_ > 0) warn(collapsed_, " with repeated points ignored");
+            if (collapsed_ > 0) {
+                warn(collapsed_, " with repeated points ignored");
+                found_.ignored.push_back({"cells", "with repeated points", collapsed_});
+            }
         } else {
             append(found_.tets, tets_);
             append(found_.prisms, prisms_);

@@ -84,7 +84,7 @@ struct Carriers {
 };
 
 std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources,
-                                   std::vector<ValuesOnPatches::Side>& on_faces, std::vector<std::string>& warnings) {
+                                   std::vector<ValuesOnPatches::Side>& on_faces, ReadResult& read) {
     if (found.patches.empty()) return {};
     const PatchFaces faces(found.patches, found.points.size());
     const Carriers carriers{sources, found.carriers};
@@ -140,14 +140,13 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
     for (std::size_t k = 0; k < result.size(); ++k) {
         if (result[k].sides.empty() && inside[k]) left_out.add(result[k].name, "its faces lie between cells");
     }
-    left_out.report("patch", "patches", warnings);
+    left_out.report("patch", "patches", read.warnings, read.ignored);
     std::erase_if(result, [](const Patch& patch) { return patch.sides.empty(); });
     return result;
 }
 
 /// The sets of nodes: the points that are carried by nodes of a set alone, by the cells that have them.
-std::vector<NodeSet> node_sets_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources,
-                                       std::vector<std::string>& warnings) {
+std::vector<NodeSet> node_sets_of_mesh(const HexMesh& mesh, const MeshFile& found, const IndexRows* sources, ReadResult& read) {
     std::vector<NodeSet> result;
     if (found.node_sets.empty()) return result;
     const Carriers carriers{sources, found.carriers};
@@ -200,18 +199,18 @@ std::vector<NodeSet> node_sets_of_mesh(const HexMesh& mesh, const MeshFile& foun
             result.push_back(std::move(of_mesh));
         }
     }
-    left_out.report("set of nodes", "sets of nodes", warnings);
+    left_out.report("set of nodes", "sets of nodes", read.warnings, read.ignored);
     return result;
 }
 
 }  // namespace
 
 FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers,
-                            const IndexRows* sources, std::vector<std::string>& warnings) {
+                            const IndexRows* sources, ReadResult& read) {
     FileSetsOfMesh result;
     MeshSets& sets = result.sets;
-    sets.patches = patches_of_mesh(mesh, found, sources, result.sides, warnings);
-    sets.nodes = node_sets_of_mesh(mesh, found, sources, warnings);
+    sets.patches = patches_of_mesh(mesh, found, sources, result.sides, read);
+    sets.nodes = node_sets_of_mesh(mesh, found, sources, read);
     if (found.sets.empty()) return result;
     const auto number = [&](Index c) { return cell_numbers.empty() ? c : cell_numbers[c]; };
     std::vector<Index> by_number(mesh.cells.size());

@@ -23,6 +23,6 @@ struct FileSetsOfMesh {
 /// cell_numbers: the number in the file of each cell of the mesh; empty if it is the same
 /// sources:      the points of the file whose mean each point of the mesh is, if its cells were split; else null
 [[nodiscard]] FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::span<const Index> cell_numbers,
-                                          const IndexRows* sources, std::vector<std::string>& warnings);
+                                          const IndexRows* sources, ReadResult& read);
 
 }  // namespace subvol::detail

@@ -61,8 +61,8 @@ std::string joining_report(std::size_t parts, std::string_view word, std::size_t
            " joined with those of another, by " + by + (order_by.empty() ? "" : "; cells in the order of " + order_by);
 }
 
-std::string not_everywhere(const std::string& name, std::string_view word) {
-    return "array " + in_quotes(name) + " is not in every " + std::string(word) + ": ignored";
+IgnoredPart not_everywhere(const std::string& name, std::string_view word) {
+    return {"array", name, 1, "it is not in every " + std::string(word)};
 }
 
 std::string does_not_number(std::string_view name, std::string_view things) {
@@ -125,6 +125,12 @@ private:
         for (const std::string& warning : piece.warnings) {
             if (said_.insert(warning).second) all_.warnings.push_back(warning);
         }
+        for (const IgnoredPart& part : piece.ignored) {
+            const auto [at, is_new] = ignored_.try_emplace({part.kind, part.name, part.reason}, all_.ignored.size());
+            if (is_new) all_.ignored.push_back(part);
+            if (!is_new) all_.ignored[at->second].count += part.count;
+        }
+        if (!all_.time) all_.time = piece.time;
         all_.cut = all_.cut || piece.cut;
         all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
     }
@@ -356,7 +362,7 @@ private:
         for (const auto& [first, of_pieces] : named) {
             const bool ghosts = first->name == kGhostArray;  // where it is missing there are none
             if (!ghosts && of_pieces.size() < pieces_.size()) {
-                all_.warnings.push_back(not_everywhere(first->name, word_));
+                all_.ignore(not_everywhere(first->name, word_));
                 continue;
             }
             std::vector<const FileArray*> parts(pieces_.size(), nullptr);
@@ -405,8 +411,9 @@ private:
     }
 
     std::vector<MeshFile> pieces_;
-    std::vector<MeshFile> empty_;  // those of which no cell is read
-    std::set<std::string> said_;   // warnings
+    std::vector<MeshFile> empty_;                                // those of which no cell is read
+    std::set<std::string> said_;                                 // warnings
+    std::map<std::array<std::string, 3>, std::size_t> ignored_;  // kinds, names, reasons: where they are in the list of all
     std::string_view word_, file_;
     MeshFile all_;
     ByName<FilePatch> patches_{all_.patches};

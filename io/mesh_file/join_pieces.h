@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId
                                          const std::string& order_by);
 
 /// What is said of an array that is not in every part, and of one that should number things and does not. things: "points"
-[[nodiscard]] std::string not_everywhere(const std::string& name, std::string_view word);
+[[nodiscard]] IgnoredPart not_everywhere(const std::string& name, std::string_view word);
 [[nodiscard]] std::string does_not_number(std::string_view name, std::string_view things);
 
 /// Puts the parts of a mesh together, one after the other, and joins their points: those with the same number in an array

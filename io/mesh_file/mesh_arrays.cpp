@@ -44,9 +44,7 @@ std::string fault_of(std::span<const std::int64_t> numbers, const Mark& mark, st
 void take_sharp(const NamedNumbers& array, const Mark& mark, MeshFile& found) {
     constexpr std::size_t kHead = kMarkLength + 1;
     const std::span<const std::int64_t> numbers = array.numbers;
-    const auto ignore = [&](const std::string& why) {
-        found.warnings.push_back("array " + in_quotes(array.name) + " of creases and sharp faces ignored: " + why);
-    };
+    const auto ignore = [&](const std::string& why) { found.ignore({"array of creases and sharp faces", array.name, 1, why}); };
     if (const std::string fault = fault_of(numbers, mark, kHead); !fault.empty()) {
         // Another mesh without creases: nothing is lost.
         return numbers.size() == kHead && numbers[kMarkLength] == 0 ? void() : ignore(fault);
@@ -133,7 +131,7 @@ void take_patches(std::span<const NamedNumbers> arrays, const Mark& mark, MeshFi
             left_out.add(patch.name, "four of its points are not those of a face of a cell");
         }
     }
-    left_out.report("patch", "patches", found.warnings);
+    left_out.report("patch", "patches", found.warnings, found.ignored);
 }
 
 }  // namespace
@@ -174,6 +172,14 @@ std::vector<NamedNumbers> settled_arrays(const HexMesh& mesh, const MeshSets& se
     return arrays;
 }
 
+bool is_time_array(std::string_view name) {
+    return name == "TimeValue" || name == "TIME";
+}
+
+void take_time(std::span<const double> values, MeshFile& found) {
+    if (values.size() == 1 && std::isfinite(values[0])) found.time = values[0];
+}
+
 void take_field_arrays(std::span<const NamedNumbers> arrays, MeshFile& found) {
     if (arrays.empty()) return;
     const Mark mark = mark_of(found.points.size(), found.hexes.corners);
@@ -186,7 +192,7 @@ void take_field_arrays(std::span<const NamedNumbers> arrays, MeshFile& found) {
 void ignore_field_arrays(std::span<const std::string> names, MeshFile& found) {
     LeftOut left_out;
     for (const std::string& name : names) left_out.add(name, "its numbers are not integers");
-    left_out.report("array", "arrays", found.warnings);
+    left_out.report("array", "arrays", found.warnings, found.ignored);
 }
 
 bool is_set_array(std::string_view name, std::size_t components) {

@@ -36,6 +36,12 @@ struct NamedNumbers {
 /// Whether field data of this name belongs to a mesh.
 [[nodiscard]] bool is_field_array(std::string_view name);
 
+/// Whether an array at no points or cells has the time of the mesh: ParaView and VisIt call it so.
+[[nodiscard]] bool is_time_array(std::string_view name);
+
+/// Takes the time of the mesh from what such an array has, unless it is not one finite number.
+void take_time(std::span<const double> values, MeshFile& found);
+
 /// The arrays of a mesh; patches without sides have none.
 [[nodiscard]] std::vector<NamedNumbers> field_arrays(const HexMesh& mesh, const MeshSets& sets);
 

@@ -101,14 +101,32 @@ void add_point(MeshFile& file, const Vec3& point, std::size_t position) {
     file.points.push_back(point);
 }
 
-void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file) {
+std::string ignored_text(const IgnoredPart& part) {
+    return part.kind + (part.name.empty() ? "" : " " + in_quotes(part.name)) + " ignored" +
+           (part.reason.empty() ? "" : ": " + part.reason);
+}
+
+void MeshFile::ignore(IgnoredPart part) {
+    warnings.push_back(ignored_text(part));
+    ignored.push_back(std::move(part));
+}
+
+std::string elements_of_type(const IgnoredPart& type) {
+    return counted(type.count, "element", "elements") + " of type " + printable(type.name);
+}
+
+void add_left_out_warning(MeshFile& found, const std::vector<IgnoredPart>& types, std::optional<std::string_view> file,
+                          const std::function<std::string(const IgnoredPart&)>& text) {
     bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // shells that are wanted
     each_kind(found, [&](const auto& cells) { has_cells = has_cells || !cells.corners.empty(); });
-    if (!has_cells) {
+    std::string list;
+    for (const IgnoredPart& type : types) list += (list.empty() ? "" : ", ") + text(type);
+    if (!has_cells && file) {
         throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),
-                    std::string(file));
+                    std::string(*file));
     }
     if (!list.empty()) found.warnings.push_back(list + " ignored");
+    found.ignored.insert(found.ignored.end(), types.begin(), types.end());
 }
 
 std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
@@ -192,18 +210,20 @@ void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_poi
     }
 }
 
-void LeftOut::add(const std::string& name, const std::string& why) {
+void LeftOut::report(std::string_view one, std::string_view many, std::vector<std::string>& warnings,
+                     std::vector<IgnoredPart>& ignored) const {
+    if (parts_.empty()) return;
     constexpr std::size_t kNamed = 6;
-    if (++count_ == 1) why_ = why;
-    if (count_ <= kNamed) names_ += (count_ == 1 ? "" : ", ") + in_quotes(name);
-    if (count_ == kNamed + 1) names_ += ", …";
-}
-
-void LeftOut::report(std::string_view one, std::string_view many, std::vector<std::string>& warnings) const {
-    if (count_ == 0) return;
-    warnings.push_back((count_ == 1 ? std::string(one) + " " + names_ + " left out: "
-                                    : counted(count_, one, many) + " left out (" + names_ + "): ") +
-                       why_);
+    std::string names;
+    for (std::size_t k = 0; k < std::min(kNamed, parts_.size()); ++k) names += (k == 0 ? "" : ", ") + in_quotes(parts_[k].name);
+    if (parts_.size() > kNamed) names += ", …";
+    warnings.push_back((parts_.size() == 1 ? std::string(one) + " " + names + " left out: "
+                                           : counted(parts_.size(), one, many) + " left out (" + names + "): ") +
+                       parts_.front().reason);
+    for (IgnoredPart part : parts_) {
+        part.kind = one;
+        ignored.push_back(std::move(part));
+    }
 }
 
 std::string NamesApart::take(const std::string& name) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -145,14 +147,19 @@ struct MeshFile {
     /// Points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
+    std::vector<IgnoredPart> ignored;
     std::vector<MeshBlock> blocks;
     std::vector<FilePatch> patches;
     std::vector<FileSet> sets;
     std::vector<FileSet> node_sets;
     /// For points that were made in curved cells: the corners between which each lies; none: points are those of the file
     IndexRows carriers;
-    bool cut = false;     ///< the cells fit together only if all are cut into tetrahedra
-    bool turned = false;  ///< the hexahedra stay as they are, also where their volume is negative
+    std::optional<double> time;  ///< what the file says of itself
+    bool cut = false;            ///< the cells fit together only if all are cut into tetrahedra
+    bool turned = false;         ///< the hexahedra stay as they are, also where their volume is negative
+
+    /// Notes a part that is not taken, and warns by `ignored_text`.
+    void ignore(IgnoredPart part);
 };
 
 /// Calls call(cells) for the FileCells of each kind of cells with a volume.
@@ -191,23 +198,40 @@ void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size
     add_point(file, point, in.position());
 }
 
-/// Appends a warning about the cells that the reader left out; refuses a file that has no other cells.
+/// 'array "a" ignored: it consists of texts'.
+[[nodiscard]] std::string ignored_text(const IgnoredPart& part);
+
+/// "4 elements of type S4", as formats say it that name the types of elements.
+[[nodiscard]] std::string elements_of_type(const IgnoredPart& type);
+
+/// Notes the cells that the reader left out, with one warning for all; refuses a file that has no other cells, unless `file`
+/// is none.
 ///
-/// list: their kinds and counts, such as "4 lines, 2 quads"; empty if there are none
-void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
+/// types: with the number of cells of each; empty if there are none
+/// text:  how many cells of a type there are
+void add_left_out_warning(MeshFile& found, const std::vector<IgnoredPart>& types, std::optional<std::string_view> file,
+                          const std::function<std::string(const IgnoredPart&)>& text = elements_of_type);
+
+/// The names that were counted while a file was read, as parts of one kind that are not taken.
+template <class Counts>
+[[nodiscard]] std::vector<IgnoredPart> ignored_parts(std::string_view kind, const Counts& counts) {
+    std::vector<IgnoredPart> parts;
+    for (const auto& [name, count] : counts) parts.push_back({std::string(kind), std::string(name), count});
+    return parts;
+}
 
 /// What a reader leaves out because it cannot read it, and nothing else needs it: one warning tells of all.
 class LeftOut {
 public:
     /// why: with the place in the file
-    void add(const std::string& name, const std::string& why);
-    [[nodiscard]] bool empty() const { return count_ == 0; }
+    void add(const std::string& name, const std::string& why) { parts_.push_back({{}, name, 1, why}); }
+    [[nodiscard]] bool empty() const { return parts_.empty(); }
     /// Appends "3 fields left out ("a", "b", "c"): " and why the first one is. one, many: words for them
-    void report(std::string_view one, std::string_view many, std::vector<std::string>& warnings) const;
+    void report(std::string_view one, std::string_view many, std::vector<std::string>& warnings,
+                std::vector<IgnoredPart>& ignored) const;
 
 private:
-    std::string names_, why_;
-    std::size_t count_ = 0;
+    std::vector<IgnoredPart> parts_;  // without their kind
 };
 
 /// Names of the things of a mesh that are made distinct: one warning for each name that several have.

@@ -228,19 +228,14 @@ void VtkCellSorter::report(std::optional<std::string_view> file) {
     const auto [quads, lines] = drop_parts_of_cells(found_, options_.shells_alone);
     if (quads > 0) left_out_[kQuad] += quads;
     if (lines > 0) left_out_[kLine] += lines;
-    std::string list;
-    for (const auto& [type, count] : left_out_) {
-        const auto names = kCellNames.find(type);
+    std::vector<IgnoredPart> types;
+    for (const auto& [type, count] : left_out_) types.push_back({"cell type", std::to_string(type), count});
+    add_left_out_warning(found_, types, file, [](const IgnoredPart& type) {
+        const auto names = kCellNames.find(std::stoll(type.name));
         const bool known = names != kCellNames.end();
-        list += (list.empty() ? "" : ", ") +
-                counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
-                std::to_string(type) + ")";
-    }
-    if (file) {
-        add_left_out_warning(found_, list, *file);
-    } else if (!list.empty()) {
-        found_.warnings.push_back(list + " ignored");
-    }
+        return counted(type.count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
+               type.name + ")";
+    });
 }
 
 }  // namespace subvol::detail

@@ -32,11 +32,14 @@ LEFT, {numbers(RIGHT)}
 unknown
 *NSET, NSET=far
 999
-*NSET, NSET=by elements, ELSET=ends
+*ELSET, ELSET=middle, GENERATE
+2, 2
+*NSET, NSET=by elements, ELSET=Middle
+*NSET, NSET=by none, ELSET=front
 *NSET
 1, 2
 """
-COUNTS = {"Every": 16, "left": 4, "ends": 8, "front": 8, "one of it": 1}
+COUNTS = {"by elements": 8, "Every": 16, "left": 4, "ends": 8, "front": 8, "one of it": 1}
 
 
 class NodeSets(InFolder):
@@ -50,12 +53,12 @@ class NodeSets(InFolder):
         self.deck()
         self.assertEqual(self.sets("a.inp"), COUNTS)
         done = self.run_ok("info", "a.inp")
-        self.assertRegex(done.out, r"nodes +ends \(8\), Every \(16\), front \(8\), left \(4\), one of it \(1\)")
-        for words in ('4 sets of nodes left out ("unknown", "of unknown", "by elements", ""): a.inp, line', 'there is no set "NOWHERE"',
+        self.assertRegex(done.out, r"nodes +by elements \(8\), ends \(8\), Every \(16\), front \(8\), left \(4\), one of it \(1\)")
+        for words in ('4 sets of nodes left out ("unknown", "of unknown", "by none", ""): a.inp, line', 'there is no set "NOWHERE"',
                       '2 sets of nodes left out ("far", "nothing"): no cell has a node of it',
                       "1 number in sets of nodes that no node has", 'surface "nodes" left out: a.inp, line', "it is of type NODE"):
             self.assertIn(words, done.err)
-        self.assertEqual({one["name"] for one in self.run_ok("info", "a.inp", "--json").json()["sets"]}, {"all", "ends"})
+        self.assertEqual({one["name"] for one in self.run_ok("info", "a.inp", "--json").json()["sets"]}, {"all", "ends", "middle"})
 
     def test_parts_and_instances(self):
         part = DECK.replace("\n*NSET\n1, 2\n", "\n")
@@ -70,7 +73,7 @@ class NodeSets(InFolder):
         self.deck()
         # Of the refined sides, each as many points as a grid of them has; "one of it" has no edge.
         grid = {"Every": lambda n: (3 * n + 1) * (n + 1) ** 2, "left": lambda n: (n + 1) ** 2, "front": lambda n: (3 * n + 1) * (n + 1),
-                "ends": lambda n: 2 * (n + 1) ** 2, "one of it": lambda n: 1}
+                "ends": lambda n: 2 * (n + 1) ** 2, "by elements": lambda n: (n + 1) ** 3, "one of it": lambda n: 1}
         for end in ".vtu", ".vtkhdf":
             for levels in 0, 1, 2:
                 with self.subTest(end=end, levels=levels):
@@ -82,7 +85,7 @@ class NodeSets(InFolder):
         for name, words in ("b.mesh", []), ("b.svw", ["--max-error", "1e-3"]):
             verb = "compress" if words else "subdivide"
             warnings = self.run_ok(verb, "a.inp", "--density", "x", *words, "-o", name, "--json").json()["warnings"]
-            self.assertEqual(len([w for w in warnings if "5 sets of nodes (ends, Every, front, left, one of it) not written" in w]), 1, warnings)
+            self.assertEqual(len([w for w in warnings if "6 sets of nodes (by elements, ends, Every, front, left, one of it) not written" in w]), 1, warnings)
 
     def test_regions_are_the_cells_at_the_nodes(self):
         self.deck()
@@ -90,8 +93,8 @@ class NodeSets(InFolder):
             with self.subTest(name):
                 done = self.run_ok("probe", "a.inp", "--stats", "--density", "x", "--scheme", "linear", "--only", f"nodes:{name}", "--json").json()
                 self.assertAlmostEqual(done["stats"]["whole"]["volume"], volume, delta=1e-9)
-        self.assertEqual(self.sets("a.inp", "--only", "nodes:left"), {"Every": 8, "left": 4, "ends": 4, "front": 4, "one of it": 1})
-        for name, words in ("nope", 'there is no set of nodes "nope" (the mesh has: ends, Every, front'), ("", "is not a region"):
+        self.assertEqual(self.sets("a.inp", "--only", "nodes:left"), {"by elements": 4, "Every": 8, "left": 4, "ends": 4, "front": 4, "one of it": 1})
+        for name, words in ("nope", 'there is no set of nodes "nope" (the mesh has: by elements, ends, Every, front'), ("", "is not a region"):
             done = subvol("render", "a.inp", "-o", "a.png", "--only", f"nodes:{name}", folder=self.folder)
             self.assertEqual(done.code, 2)
             self.assertIn(words, done.err)

@@ -234,11 +234,11 @@ void GmshCells::list_left_out(std::string_view file) {
     const auto [quads, lines] = drop_parts_of_cells(found_, options_.shells_alone);
     leave_out(kGmshElements.at(3), quads);
     leave_out(kGmshElements.at(1), lines);
-    std::string list;
-    for (const auto& [one, rest] : left_out_) {
-        list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
-    }
-    add_left_out_warning(found_, list, file);
+    std::vector<IgnoredPart> types;
+    for (const auto& [one, rest] : left_out_) types.push_back({"element type", std::string(one), rest.first});
+    add_left_out_warning(found_, types, file, [&](const IgnoredPart& type) {
+        return counted(type.count, type.name, left_out_.at(type.name).second);
+    });
 }
 
 }  // namespace subvol::detail

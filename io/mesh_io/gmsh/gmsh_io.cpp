@@ -160,8 +160,7 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& ent
     if (count == 0) {
         found.arrays.push_back(std::move(array));
     } else {
-        found.warnings.push_back("array " + in_quotes(header.name) + " has no value at " +
-                                 counted(count, entity, entity + "s") + ": ignored");
+        found.ignore({"array", header.name, 1, "it has no value at " + counted(count, entity, entity + "s")});
     }
 }
 
@@ -308,7 +307,9 @@ private:
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
             if (in_.word() != end) continue;
-            if (warn) found_.warnings.push_back("section " + shortened(keyword) + " ignored");
+            IgnoredPart section{"section", std::string(keyword)};
+            if (warn) return found_.ignore(std::move(section));
+            found_.ignored.push_back(std::move(section));
             return;
         }
         in_.fail_word({shortened(keyword)}, shortened(end), "");

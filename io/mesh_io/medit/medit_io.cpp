@@ -43,6 +43,13 @@ const std::map<std::string_view, std::array<std::string_view, 2>> kVolumeCells{{
 // Sections of which groups of faces and edges are made.
 const std::set<std::string_view> kTagSections{"Edges", "Ridges", "Triangles", "Quadrilaterals"};
 
+// "2 prisms", or "Corners (8)".
+std::string words_of(const IgnoredPart& section) {
+    const auto cells = kVolumeCells.find(section.name);
+    if (cells == kVolumeCells.end()) return section.name + " (" + std::to_string(section.count) + ")";
+    return counted(section.count, cells->second[0], cells->second[1]);
+}
+
 class MeditReader {
 public:
     MeditReader(std::string_view text, std::string_view file, const ReadOptions& options)
@@ -208,24 +215,20 @@ private:
 
     // Warns of the cells and of the other sections that are left out, except empty ones.
     void list_left_out() {
-        std::string cells;
-        std::string sections;
-        for (const auto& [keyword, count] : left_out_) {
-            if (count == 0) continue;
-            const auto volume = kVolumeCells.find(keyword);
-            std::string& list = volume == kVolumeCells.end() ? sections : cells;
-            list += list.empty() ? "" : ", ";
-            if (volume == kVolumeCells.end()) {
-                list += keyword + " (" + std::to_string(count) + ")";
-            } else {
-                list += counted(count, volume->second[0], volume->second[1]);
-            }
-        }
+        std::erase_if(left_out_, [](const auto& section) { return section.second == 0; });
+        std::vector<IgnoredPart> cells = ignored_parts("section", left_out_);
         bool some = false;
         each_kind(found_, [&](const auto& kind) { some = some || !kind.corners.empty(); });
-        if (!some && !sections.empty()) cells += (cells.empty() ? "" : ", ") + sections;
-        add_left_out_warning(found_, cells, file_);
-        if (!sections.empty()) found_.warnings.push_back("sections ignored: " + sections);
+        const auto others = std::stable_partition(cells.begin(), cells.end(),
+                                                  [](const IgnoredPart& part) { return kVolumeCells.contains(part.name); });
+        const std::vector<IgnoredPart> sections(others, cells.end());
+        if (some) cells.erase(others, cells.end());
+        add_left_out_warning(found_, cells, file_, words_of);
+        if (sections.empty()) return;
+        std::string list;
+        for (const IgnoredPart& part : sections) list += (list.empty() ? "" : ", ") + words_of(part);
+        found_.warnings.push_back("sections ignored: " + list);
+        found_.ignored.insert(found_.ignored.end(), sections.begin(), sections.end());
     }
 
     TextScanner in_;
@@ -348,7 +351,8 @@ public:
         }
         if (groups_.any()) read_groups();
         groups_.check(file_);
-        add_left_out_warning(found_, left_out_, file_);
+        add_left_out_warning(found_, left_out_, file_, words_of);
+        note_other_sections();
         return assemble(std::move(found_), in_, file_, kMeshbNames, options_);
     }
 
@@ -480,12 +484,21 @@ private:
     }
 
     void list_left_out() {
-        const std::map<std::int64_t, std::array<std::string_view, 2>> names{
-            {kTetrahedra, {"tetrahedron", "tetrahedra"}}, {kPrisms, {"prism", "prisms"}}, {kPyramids, {"pyramid", "pyramids"}}};
+        const std::map<std::int64_t, std::string> names{
+            {kTetrahedra, "Tetrahedra"}, {kPrisms, "Prisms"}, {kPyramids, "Pyramids"}};
         for (const auto& [section, name] : names) {
             if (!sections_.contains(section)) continue;
-            const std::size_t count = count_in(section, {name[0]}, 1);
-            if (count > 0) left_out_ += (left_out_.empty() ? "" : ", ") + counted(count, name[0], name[1]);
+            const std::size_t count = count_in(section, {name}, 1);
+            if (count > 0) left_out_.push_back({"section", name, count});
+        }
+    }
+
+    // Sections are known by their numbers in the format.
+    void note_other_sections() {
+        std::set<std::int64_t> taken{kDimension, kVertices, kTetrahedra, kPrisms, kHexahedra, kPyramids, kEnd};
+        if (groups_.any()) taken.insert({kEdges, kTriangles, kQuadrilaterals, kRidges});
+        for (const auto& section : sections_) {
+            if (!taken.contains(section.first)) found_.ignored.push_back({"section", std::to_string(section.first)});
         }
     }
 
@@ -499,7 +512,7 @@ private:
     std::map<std::int64_t, std::size_t> sections_;  // the position of the count of each
     MeshFile found_;
     SharpGroups groups_;
-    std::string left_out_;
+    std::vector<IgnoredPart> left_out_;
 };
 
 }  // namespace

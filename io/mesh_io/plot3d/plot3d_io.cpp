@@ -164,8 +164,8 @@ void read_flow(std::string_view text, std::string_view file, const Plot3dLayout&
     const auto layout = layout_of(in, kFlow);
     const auto same = [](const StructuredGrid& a, const StructuredGrid& b) { return a.points == b.points; };
     if (!layout || !std::ranges::equal(layout->blocks, places.blocks, same)) {
-        found.warnings.push_back("the flow in " + std::string(file) + " does not have these blocks: ignored");
-        return;
+        return found.ignore(
+            {"file", std::filesystem::path(file).filename().string(), 1, "the flow in it does not have these blocks"});
     }
     Numbers numbers(in, layout->encoding);
     std::ignore = read_sizes(numbers, layout->several);
@@ -211,7 +211,7 @@ ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadO
     for (const StructuredGrid& grid : layout->blocks) read_block(numbers, *layout, grid, found, ghosts);
     if (!flow.text.empty()) read_flow(flow.text, flow.file, *layout, found);
     if (layout->blanks) found.arrays.push_back(std::move(ghosts));
-    add_left_out_warning(found, "", file);
+    add_left_out_warning(found, {}, file);
     return assemble(std::move(found), in, file, kNames, options);
 }
 

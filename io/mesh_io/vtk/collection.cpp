@@ -234,6 +234,7 @@ PartFiles chosen_files(std::vector<ListedFile> files, std::string_view list, con
         if (!choice.takes(file.block)) continue;
         if (is_surface(file.path)) {
             ++surfaces;
+            chosen.ignored.push_back({"file", file.path.filename().string(), 1, "it is one of surfaces"});
         } else {
             chosen.files.push_back(std::move(file));
         }
@@ -330,6 +331,7 @@ ReadResult read_step(const std::filesystem::path& path, const ReadOptions& optio
     if (cells_of(found) == 0) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its files", list);
     merge_blocks(found.blocks);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    found.ignored.insert(found.ignored.end(), chosen.ignored.begin(), chosen.ignored.end());
     return assemble(std::move(found), list, kPieceNames, of_file);
 }
 

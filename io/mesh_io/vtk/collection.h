@@ -41,9 +41,10 @@ struct Collection {
 struct PartFiles {
     /// In the order of the lists; those of blocks that are not chosen and of surfaces are left out
     std::vector<ListedFile> files;
-    std::string_view word;              ///< "piece" or "block"
-    std::vector<std::string> warnings;  ///< warnings of the step, and of the surfaces
-    bool means = false;                 ///< whether values at cells are read as means over them
+    std::string_view word;                  ///< "piece" or "block"
+    std::vector<std::string> warnings;      ///< warnings of the step, and of the surfaces
+    std::vector<IgnoredPart> ignored = {};  ///< the files of surfaces
+    bool means = false;                     ///< whether values at cells are read as means over them
 };
 
 /// Returns nothing if the file is not a collection, or if its step is a single file.

@@ -229,6 +229,7 @@ void VtkArrayReader::read_lookup_table() {
     const std::string name(in_.word());
     const std::size_t size = in_.count({"LOOKUP_TABLE"});
     skip_values(name, kByte, 4 * size);
+    found_.ignored.push_back({"lookup table", decoded(name)});
 }
 
 void VtkArrayReader::read_field() {
@@ -252,12 +253,19 @@ void VtkArrayReader::read_field_array() {
     if (type_word == "STRING" || type_word == "UTF8_STRING") {
         in_.word();
         values_.skip_texts(components * tuples, what);
-        found_.warnings.push_back("text array " + in_quotes(decoded(name)) + " ignored");
+        found_.ignore({"array", decoded(name), 1, "it consists of texts"});
         return;
     }
     const VtkType type = values_.read_type(what);
+    if (!in_data_ && is_time_array(name) && components * tuples == 1) {
+        values_.begin(type);
+        const double time = values_.real({what, 0});
+        take_time({&time, 1}, found_);
+        return;
+    }
     if (!in_data_) {
         skip_values(name, type, components * tuples);
+        found_.ignored.push_back({"array", decoded(name), 1, "it is at no points or cells"});
         return;
     }
     if (tuples != tuples_) {

@@ -69,7 +69,7 @@ public:
         for (const Partition& partition : partitions) {
             if (partition.points.count > 0) parts.push_back(read_part(partition, partitions.size() == 1));
         }
-        if (parts.empty()) file_.fail("no hexahedra in any of its parts");
+        if (parts.empty()) parts.emplace_back();
         MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "part", file_.name());
         found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
         add_left_out_warning(found, {}, file_.name());
@@ -228,7 +228,14 @@ private:
         for (const std::string& name : file_.names(kRoot + "/FieldData")) {
             const std::string path = kRoot + "/FieldData/" + name;
             const auto there = is_field_array(name) ? file_.find(path) : std::nullopt;
-            if (!there) continue;
+            if (is_time_array(name) && file_.has(path) && file_.rows(path) == 1 && file_.columns(path) == 1) {
+                take_time(file_.reals(path), found);
+                continue;
+            }
+            if (!there) {
+                found.ignored.push_back({"array", as_utf8(name), 1, "it is at no points or cells"});
+                continue;
+            }
             if (!there->characters && is_integer(there->type)) {
                 taken.push_back({as_utf8(name), file_.integers(path)});
             } else {
@@ -245,7 +252,10 @@ private:
         ByName<FileSet> sets(found.sets);
         for (const std::string& name : file_.names(kRoot + "/" + group)) {
             const std::string path = kRoot + "/" + group + "/" + name;
-            if (!file_.has(path)) continue;  // texts
+            if (!file_.has(path)) {
+                found.ignored.push_back({"array", as_utf8(name), 1, "it consists of texts"});
+                continue;
+            }
             const std::size_t components = file_.columns(path);
             if (components == 0) continue;
             const std::size_t of_mesh = of_step(at_cells ? "CellOffsets" : "PointOffsets", 0);

@@ -196,9 +196,16 @@ private:
     void read_field_data(const pugi::xml_node& element) {
         std::vector<NamedNumbers> taken;
         std::vector<std::string> ignored;
-        for (const auto& array : element.children("DataArray")) {
+        for (const auto& array : element.children()) {
             const std::string name = as_utf8(array.attribute("Name").as_string());
-            if (!is_field_array(name)) continue;
+            if (is_time_array(name) && arrays_.size(array) == 1) {
+                arrays_.each_real(array, [&](std::span<const double> values) { take_time(values, found_); });
+                continue;
+            }
+            if (!is_field_array(name)) {
+                found_.ignored.push_back({"array", name, 1, "it is at no points or cells"});
+                continue;
+            }
             if (arrays_.has_integers(array)) {
                 taken.push_back({name, arrays_.integers(array)});
             } else {
@@ -354,7 +361,7 @@ private:
             const std::string name = as_utf8(array.attribute("Name").as_string("unnamed"));
             const std::string_view type = array.attribute("type").as_string();
             if (type == "String" || type == "Bit") {
-                found_.warnings.push_back("array " + in_quotes(name) + " of type " + shortened(type) + " ignored");
+                found_.ignore({"array", name, 1, "it is of type " + shortened(type)});
                 continue;
             }
             const bool integers = arrays_.has_integers(array);
@@ -398,7 +405,7 @@ private:
         std::erase_if(found_.arrays, [&](const FileArray& array) {
             const std::size_t tuples = array.at_cells ? cells_before_ : found_.points.size();
             const bool partial = array.values.size() != tuples * static_cast<std::size_t>(array.components);
-            if (partial) found_.warnings.push_back("array " + in_quotes(array.name) + " is not in every piece: ignored");
+            if (partial) found_.ignore({"array", array.name, 1, "it is not in every piece"});
             return partial;
         });
     }

@@ -385,6 +385,10 @@ private:
 
     // An array that cannot be read stops no other, and the file only if there is no other.
     void read_arrays(const pugi::xml_node& grid, MeshFile& found) {
+        for (const char* kind : {"Set", "Information"}) {
+            for (const auto& element : file_.children(grid, kind))
+                found.ignored.push_back({kind, as_utf8(element.attribute("Name").as_string())});
+        }
         constexpr std::size_t kMostUnread = 1000;
         std::optional<Error> first;
         for (const auto& attribute : file_.children(grid, "Attribute")) {
@@ -405,7 +409,7 @@ private:
         const std::string center = kind_of(attribute, {"Center"}), name = as_utf8(attribute.attribute("Name").as_string());
         const bool at_cells = center == "CELL";
         if (!at_cells && center != "NODE" && !center.empty()) {
-            found.warnings.push_back("array " + in_quotes(name) + " is neither at points nor at cells: ignored");
+            found.ignore({"array", name, 1, "it is neither at points nor at cells"});
             return;
         }
         const std::size_t count = at_cells ? cells_ : found.points.size();

@@ -22,6 +22,7 @@
 #include <set>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "local_system.h"
 #include "subvol/detail/named_files.h"
@@ -62,6 +63,10 @@ std::string_view name_of(std::string_view text) {
 // Options that make or move nodes and elements: without them the mesh would be another one.
 constexpr std::array kChangesTheMesh{"*NMAP"sv,   "*NCOPY"sv,        "*NFILL"sv,
                                      "*ELCOPY"sv, "*IMPERFECTION"sv, "*SYMMETRICMODELGENERATION"sv};
+
+// Keywords without data that are taken.
+const std::set<std::string_view> kStructure{"*ASSEMBLY",    "*ENDASSEMBLY", "*PART", "*ENDPART",
+                                            "*ENDINSTANCE", "*ELSET",       "*NSET", "*SURFACE"};
 
 class DeckReader {
 public:
@@ -252,14 +257,42 @@ private:
             if (values_["NSET"].empty()) {
                 leave_out_set("it has no name");
             } else if (values_.contains("ELSET")) {
-                leave_out_set("it is that of the nodes of a set of elements, ELSET");
+                take_nodes_of_elements();
             } else {
                 set_of(values_["NSET"]);
             }
         }
         if (keyword == "*SURFACE") start_surface();
+        if (section_ == Section::Other && !kStructure.contains(keyword)) ++deck_.other_keywords[keyword];
         const bool has_data = section_ == Section::Node || section_ == Section::Element;
         return has_data && values_.contains("INPUT") ? std::optional(values_["INPUT"]) : std::nullopt;
+    }
+
+    // *NSET, ELSET: the nodes of the elements that are in the set so far.
+    void take_nodes_of_elements() {
+        const std::string& name = values_["ELSET"];
+        kind_ = &InpPart::sets;
+        const InpSet* const of_elements = set_named(name);
+        kind_ = &InpPart::node_sets;
+        if (of_elements == nullptr) return leave_out_set("there is no set of elements " + in_quotes(name));
+        const std::unordered_set<std::int64_t> numbers(of_elements->numbers.begin(), of_elements->numbers.end());
+        const auto has = [&](std::int64_t number) {
+            return numbers.contains(number) || std::ranges::any_of(of_elements->ranges, [&](const auto& range) {
+                       return number >= range[0] && number <= range[1] && (number - range[0]) % range[2] == 0;
+                   });
+        };
+        std::vector<std::int64_t> nodes = numbers_in(scope_, [&](const InpPart& part, std::vector<std::int64_t>& into) {
+            count_members(part.elements.size() * (1 + of_elements->ranges.size()));
+            for (const InpElement& element : part.elements) {
+                if (has(element.number)) into.insert(into.end(), element.nodes.begin(), element.nodes.end());
+            }
+        });
+        std::ranges::sort(nodes);
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        count_members(nodes.size());
+        InpSet& set = set_of(values_["NSET"]);
+        set.numbers.insert(set.numbers.end(), nodes.begin(), nodes.end());
+        section_ = Section::Other;  // it has no data
     }
 
     void start_surface() {
@@ -596,19 +629,25 @@ private:
         return found;
     }
 
-    bool copy_set(const std::string& name, std::string_view member) {
+    // The set of that name in the part or instance that the line is about, or in the part of the instance.
+    [[nodiscard]] const InpSet* set_named(std::string_view name) const {
         const auto in = [&](const std::string& part) -> const InpSet* {
             const auto sets = deck_.parts.find(part);
             if (sets == deck_.parts.end()) return nullptr;
             const auto& all = sets->second.*kind_;
-            const auto found = all.find(upper_case(member));
+            const auto found = all.find(upper_case(name));
             return found == all.end() || found->second.left_out ? nullptr : &found->second;
         };
-        const InpSet* other = in(scope_);
+        const InpSet* set = in(scope_);
         for (const InpInstance& instance : deck_.instances) {
-            if (other != nullptr || !scope_.starts_with(kInside)) break;
-            if (instance.inside == scope_) other = in(instance.part);
+            if (set != nullptr || !scope_.starts_with(kInside)) break;
+            if (instance.inside == scope_) set = in(instance.part);
         }
+        return set;
+    }
+
+    bool copy_set(const std::string& name, std::string_view member) {
+        const InpSet* const other = set_named(member);
         if (other == nullptr) return false;
         count_members(1 + other->numbers.size() + other->ranges.size());
         const InpSet copy = *other;

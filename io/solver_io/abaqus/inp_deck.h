@@ -78,6 +78,7 @@ struct InpDeck {
     std::vector<InpSurface> surfaces;
     std::size_t made = 0;    // nodes and elements that are not in the text, those of instances among them
     std::size_t longer = 0;  // elements with more numbers than their types have nodes
+    std::map<std::string, std::size_t> other_keywords;  // those of which nothing is taken, in capitals, and how many there are
     LeftOut sets_left_out, node_sets_left_out, surfaces_left_out;
 };
 

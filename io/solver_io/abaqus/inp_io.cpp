@@ -99,9 +99,9 @@ private:
             found_.warnings.push_back(counted(deck_.longer, "element has", "elements have") +
                                       " more numbers than nodes: those after the last node are ignored");
         }
-        deck_.sets_left_out.report("set of elements", "sets of elements", found_.warnings);
-        deck_.node_sets_left_out.report("set of nodes", "sets of nodes", found_.warnings);
-        deck_.surfaces_left_out.report("surface", "surfaces", found_.warnings);
+        deck_.sets_left_out.report("set of elements", "sets of elements", found_.warnings, found_.ignored);
+        deck_.node_sets_left_out.report("set of nodes", "sets of nodes", found_.warnings, found_.ignored);
+        deck_.surfaces_left_out.report("surface", "surfaces", found_.warnings, found_.ignored);
         if (unknown_nodes_ > 0) {
             found_.warnings.push_back(counted(unknown_nodes_, "number", "numbers") + " in sets of nodes that no node has");
         }
@@ -117,11 +117,9 @@ private:
         if (sides_ > kMostSides + kSidesOfElement * next_)
             found_.warnings.emplace_back("its surfaces have too many sides: some are left out");
         drop_parts();
-        std::string list;
-        for (const auto& [type, count] : left_out_) {
-            list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + type;
-        }
-        add_left_out_warning(found_, list, file_);
+        add_left_out_warning(found_, ignored_parts("element type", left_out_), file_);
+        for (IgnoredPart& keyword : ignored_parts("keyword", deck_.other_keywords))
+            found_.ignored.push_back(std::move(keyword));
         for (const auto& [key, block] : blocks_) {
             if (block.cells > 0) found_.blocks.push_back(block);
         }

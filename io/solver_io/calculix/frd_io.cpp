@@ -263,6 +263,7 @@ public:
         StepTimes steps;
         while (lines_.next()) {
             const std::string_view key = lines_.key();
+            if (key.starts_with("1U")) found_.ignored.push_back({"record", printable(std::string(trimmed(lines_.line())))});
             if (key == "2C") read_nodes();
             if (key == "3C") read_elements();
             if (key == "100C") {
@@ -385,7 +386,7 @@ private:
         const FrdResult result = result_of(lines_);
         const std::size_t components = result.components;
         if (result.kind != 1 || components == 0 || components > kMostComponents) {
-            found_.warnings.push_back("result " + in_quotes(result.name) + " is not at the nodes: ignored");
+            found_.ignore({"result", result.name, 1, "it is not at the nodes"});
             for (std::size_t k = 0; k < head.count; ++k) std::ignore = lines_.bytes(4 * (components + 1), "values");
             return;
         }
@@ -518,11 +519,7 @@ private:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
-        std::string list;
-        for (const auto& [type, count] : left_out_) {
-            list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + std::string(type);
-        }
-        add_left_out_warning(found_, list, file_);
+        add_left_out_warning(found_, ignored_parts("element type", left_out_), file_);
     }
 
     static constexpr std::size_t kOfLine = 6, kMostComponents = 60;

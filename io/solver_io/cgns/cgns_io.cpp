@@ -110,7 +110,7 @@ public:
             part.blocks = {{names[z], cells}};
             parts.push_back(std::move(part));
         }
-        if (parts.empty()) tree_.file().fail("no hexahedra in any of its zones" + left_out());
+        if (parts.empty()) parts.emplace_back();
         MeshFile found =
             parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "zone", tree_.file().name());
         found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
@@ -118,18 +118,26 @@ public:
             found.warnings.push_back(counted(curved_, "element has", "elements have") +
                                      " more nodes than corners: only the corners are used");
         }
-        conditions_.report("boundary condition", "boundary conditions", found.warnings);
-        if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
+        note_unread_nodes(zones, found);
+        conditions_.report("boundary condition", "boundary conditions", found.warnings, found.ignored);
+        add_left_out_warning(found, ignored_parts("element type", left_out_), tree_.file().name());
         return assemble(std::move(found), tree_.file().name(), kCgnsNames, options_);
     }
 
 private:
-    [[nodiscard]] std::string left_out() const {
-        std::string list;
-        for (const auto& [type, count] : left_out_) {
-            list += (list.empty() ? ", but " : ", ") + counted(count, "element", "elements") + " of type " + std::string(type);
-        }
-        return list.empty() ? list : list + " ignored";
+    // The nodes below the base and its zones that no step reads.
+    void note_unread_nodes(const std::vector<std::string>& zones, MeshFile& found) const {
+        static const std::set<std::string_view> kRead{
+            "Zone_t",   "BaseIterativeData_t", "ZoneType_t",         "GridCoordinates_t", "Elements_t",
+            "ZoneBC_t", "FlowSolution_t",      "ZoneIterativeData_t"};
+        const auto note = [&](const std::string& node) {
+            for (const auto& [path, label] : tree_.labelled_children(node)) {
+                if (!kRead.contains(label))
+                    found.ignored.push_back({label.empty() ? "node" : printable(label), printable(path)});
+            }
+        };
+        note(base_);
+        for (const std::string& zone : zones) note(zone);
     }
 
     void find_base() {
@@ -453,15 +461,11 @@ private:
         const auto location = tree_.child(solution, "GridLocation_t");
         const std::string where = location ? tree_.text(*location) : "Vertex";
         if (where != "Vertex" && where != "CellCenter") {
-            found.warnings.push_back("solution " + in_quotes(CgnsTree::name_of(solution)) + " at " + in_quotes(where) +
-                                     " ignored");
-            return;
+            return found.ignore({"solution", CgnsTree::name_of(solution), 1, "it is at " + in_quotes(where)});
         }
         const bool at_cells = where == "CellCenter";
         if (at_cells && !zone.structured && cells_of_sections_ != zone.cells) {
-            found.warnings.push_back("solution " + in_quotes(CgnsTree::name_of(solution)) +
-                                     " is not at the elements that are read: ignored");
-            return;
+            return found.ignore({"solution", CgnsTree::name_of(solution), 1, "it is not at the elements that are read"});
         }
         const std::vector<std::string> nodes = tree_.children(solution, "DataArray_t");
         std::set<std::string_view> left(nodes.begin(), nodes.end());

@@ -15,12 +15,21 @@ std::string without_padding(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> CgnsTree::children(const std::string& node, const std::string& label) const {
-    std::vector<std::string> found;
+std::vector<std::pair<std::string, std::string>> CgnsTree::labelled_children(const std::string& node) const {
+    std::vector<std::pair<std::string, std::string>> found;
     for (const std::string& name : file_.names(node.empty() ? "/" : node)) {
         if (name.empty() || name.front() == ' ') continue;  // the node's own data
-        const std::string path = node + "/" + name;
-        if (without_padding(file_.text(path, "label").value_or("")) == label) found.push_back(path);
+        std::string path = node + "/" + name;
+        std::string label = without_padding(file_.text(path, "label").value_or(""));
+        found.emplace_back(std::move(path), std::move(label));
+    }
+    return found;
+}
+
+std::vector<std::string> CgnsTree::children(const std::string& node, const std::string& label) const {
+    std::vector<std::string> found;
+    for (auto& [path, of_child] : labelled_children(node)) {
+        if (of_child == label) found.push_back(std::move(path));
     }
     return found;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "subvol/detail/hdf5_file.h"
@@ -17,6 +18,8 @@ public:
 
     /// The paths of the children with this label, in the order of their names.
     [[nodiscard]] std::vector<std::string> children(const std::string& node, const std::string& label) const;
+    /// The paths and labels of all children.
+    [[nodiscard]] std::vector<std::pair<std::string, std::string>> labelled_children(const std::string& node) const;
     /// The first of them.
     [[nodiscard]] std::optional<std::string> child(const std::string& node, const std::string& label) const;
 

@@ -55,6 +55,7 @@ EnsightCase::EnsightCase(std::string_view text, std::string_view file)
                 word == "material" || word == "scripts" || word == "block_continuation") {
                 section = word;
                 list_.clear();
+                if (section == "material" || section == "scripts") ignored_.push_back({"section", section});
             } else if (section == "time") {
                 take_time({}, line, position);
             }
@@ -107,10 +108,14 @@ void EnsightCase::take_variable(const std::string& key, std::string_view rest, s
     if (per == std::string::npos) return;
     const std::string place = key.substr(per + 5);
     const std::size_t components = components_of(key.substr(0, per));
-    if (key.starts_with("constant")) return;
     auto words = words_of(rest);
+    if (key.starts_with("constant")) {
+        ignored_.push_back({"constant", words.empty() ? key : words[words.size() > 2 ? 1 : 0]});
+        return;
+    }
     if (components == 0 || (place != "node" && place != "element")) {
-        warnings_.push_back("variables of the kind " + in_quotes(key) + " ignored");
+        ignored_.push_back({"variable", std::string(rest), 1, "variables of the kind " + in_quotes(key) + " are not read"});
+        warnings_.push_back(ignored_text(ignored_.back()));
         return;
     }
     if (words.size() < 2) in_.fail_at(position, "a name and a file are needed");

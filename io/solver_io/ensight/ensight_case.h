@@ -61,6 +61,7 @@ public:
     [[nodiscard]] const EnsightFiles& geometry() const { return geometry_; }
     [[nodiscard]] const std::vector<EnsightVariable>& variables() const { return variables_; }
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<IgnoredPart>& ignored() const { return ignored_; }
 
 private:
     void take_geometry(std::string_view key, std::string_view rest, std::size_t position);
@@ -79,6 +80,7 @@ private:
     std::map<int, EnsightTimes> sets_;
     std::vector<double> times_;
     std::vector<std::string> warnings_;
+    std::vector<IgnoredPart> ignored_;
     // For the time set that is being read:
     int set_ = 0;
     std::string list_;  // what the numbers of the next lines are

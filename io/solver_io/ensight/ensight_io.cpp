@@ -95,27 +95,20 @@ public:
             part.found.blocks = {{printable(part.name), cells}};
             files.push_back(std::move(part.found));
         }
-        if (files.empty()) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its parts" + left_out(), file_);
+        if (files.empty()) files.emplace_back();
         MeshFile found = files.size() == 1 ? std::move(files.front()) : join_pieces(std::move(files), "part", file_);
         found.unread.insert(found.unread.end(), unread_.begin(), unread_.end());
         found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+        found.ignored.insert(found.ignored.end(), case_.ignored().begin(), case_.ignored().end());
         if (curved_ > 0) {
             found.warnings.push_back(counted(curved_, "element has", "elements have") +
                                      " more nodes than corners: only the corners are used");
         }
-        if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
+        add_left_out_warning(found, ignored_parts("element type", left_out_), file_);
         return assemble(std::move(found), file_, kEnsightNames, options_);
     }
 
 private:
-    [[nodiscard]] std::string left_out() const {
-        std::string list;
-        for (const auto& [type, count] : left_out_) {
-            list += (list.empty() ? ", but " : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
-        }
-        return list.empty() ? list : list + " ignored";
-    }
-
     EnsightStep checked(const EnsightFiles& files, double time) {
         EnsightStep step = case_.file_at(files, time);
         const auto place = [&] { return case_.place_of(files); };

@@ -50,6 +50,16 @@ public:
     [[nodiscard]] std::size_t dimension(const std::string& name) const;
     [[nodiscard]] bool has(const std::string& variable) const { return source_->variables.contains(variable); }
 
+    /// The variables of which no value was read.
+    [[nodiscard]] std::vector<std::string> unused() const {
+        std::vector<std::string> names;
+        for (const auto& variable : source_->variables) {
+            if (!used_.contains(variable.first)) names.push_back(variable.first);
+        }
+        std::ranges::sort(names);
+        return names;
+    }
+
     /// The values at given places along the first dimensions of a variable. count: their expected number
     [[nodiscard]] std::vector<double> reals(const std::string& variable, const std::vector<std::size_t>& places,
                                             std::size_t count) const;
@@ -73,6 +83,7 @@ private:
     std::string_view bytes_;
     std::string_view file_;
     std::unique_ptr<NetcdfSource> source_;
+    mutable std::set<std::string> used_;  // the variables of which values were read
 };
 
 // netCDF pads names with zeros or blanks.
@@ -101,6 +112,7 @@ const NetcdfVariable& ExodusFile::checked(const std::string& name, const std::ve
                                           std::size_t count) const {
     const auto found = source_->variables.find(name);
     if (found == source_->variables.end()) fail("there is no " + name);
+    used_.insert(name);
     const NetcdfVariable& variable = found->second;
     if (variable.lengths.size() < places.size() || (variable.record && places.empty())) {
         fail(name + " has " + counted(variable.lengths.size(), "dimension", "dimensions"));
@@ -263,7 +275,7 @@ private:
             try {
                 read();
             } catch (const Error& error) {
-                found_.warnings.push_back(what + " ignored: " + error.message());
+                found_.ignore({what, {}, 1, error.message()});
             }
         };
         read_or_ignore("side sets", [&] { read_side_sets(); });
@@ -273,6 +285,7 @@ private:
         const std::size_t others = polyhedra_.take_into(found_, options_.other_cells == OtherCells::Ignore);
         if (others > 0) left_out_[kNfaced] += others;
         list_left_out();
+        for (const std::string& variable : exodus_.unused()) found_.ignored.push_back({"variable", variable});
     }
 
     void read_points() {
@@ -520,11 +533,7 @@ private:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
-        std::string list;
-        for (const auto& [type, count] : left_out_) {
-            list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
-        }
-        add_left_out_warning(found_, list, file_);
+        add_left_out_warning(found_, ignored_parts("element type", left_out_), file_);
     }
 
     void read_variables() {
@@ -545,9 +554,7 @@ private:
             const std::size_t number = variable.numbers[c];
             const auto values = at_cells ? element_values(number) : node_values(number);
             if (values.empty()) {
-                found_.warnings.push_back("array " + in_quotes(variable.name) +
-                                          " is not in the blocks that are read, or in too few: ignored");
-                return;
+                return found_.ignore({"array", variable.name, 1, "it is not in the blocks that are read, or in too few"});
             }
             for (std::size_t i = 0; i < values.size(); ++i) array.values[i * components + c] = values[i];
         }

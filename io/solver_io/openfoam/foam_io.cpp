@@ -65,7 +65,8 @@ public:
             taker_.add(static_cast<Index>(c), faces_);
         }
         if (taker_.left_out() > 0)
-            found_.warnings.push_back(counted(taker_.left_out(), "other cell", "other cells") + " ignored");
+            add_left_out_warning(found_, {{"cells", "other cells", taker_.left_out()}}, std::nullopt,
+                                 [](const IgnoredPart& cells) { return counted(cells.count, "other cell", "other cells"); });
         taker_.report();
     }
 
@@ -183,7 +184,7 @@ public:
                 }
             }
         }
-        without_values_.report("boundaryField", "boundaryFields", found_.warnings);
+        without_values_.report("boundaryField", "boundaryFields", found_.warnings, found_.ignored);
         return std::move(found_);
     }
 
@@ -245,7 +246,7 @@ private:
         try {
             read(path);
         } catch (const Error& error) {
-            found_.warnings.push_back(in_quotes(name) + " ignored: " + error.what());
+            found_.ignore({"file", name, 1, error.what()});
         }
     }
 
@@ -319,10 +320,16 @@ private:
 
     void read_field(const fs::path& path, const std::string& name) {
         constexpr std::size_t kHeader = 4096;
-        if (start_of_maybe_gzipped(path, kHeader).find("FoamFile") == std::string::npos) return;
+        if (start_of_maybe_gzipped(path, kHeader).find("FoamFile") == std::string::npos) {
+            found_.ignored.push_back({"file", name, 1, "it is no file of OpenFOAM"});
+            return;
+        }
         FoamText text(path, kNoLimit, block());
         const std::size_t components = components_of_class(text.type());
-        if (components == 0) return;
+        if (components == 0) {
+            found_.ignored.push_back({"field", name, 1, "it is of class " + text.type()});
+            return;
+        }
         take(path, text, cells_ * components * sizeof(double));  // "uniform" is one value for all cells
         found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
         FileArray& array = found_.arrays.back();

@@ -229,7 +229,7 @@ TEST(FieldArrays, OfAnotherMeshOrDamagedAreIgnored) {
         take_field_arrays(arrays, tagged.file);
         EXPECT_TRUE(tagged.file.sharp.empty() && !tagged.file.sharp.settled && tagged.file.patches.empty()) << damage.what;
         EXPECT_THAT(tagged.file.warnings,
-                    ElementsAre("array \"SubvolSharp\" of creases and sharp faces ignored: " + damage.said,
+                    ElementsAre("array of creases and sharp faces \"SubvolSharp\" ignored: " + damage.said,
                                 "2 patches left out (\"in\", \"walls\"): " + damage.said))
             << damage.what;
     }

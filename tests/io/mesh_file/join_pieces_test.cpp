@@ -184,7 +184,7 @@ TEST(JoinPieces, NumbersThatAreNoNumbersOfPointsAreNotUsed) {
     }
     std::vector<MeshFile> pieces = pieces_of_box();
     number_points(pieces[0], "GlobalNodeId");
-    EXPECT_THAT(joined(pieces).warnings, Contains("array \"GlobalNodeId\" is not in every piece: ignored"));
+    EXPECT_THAT(joined(pieces).warnings, Contains("array \"GlobalNodeId\" ignored: it is not in every piece"));
 }
 
 TEST(JoinPieces, NumbersOfCellsHaveToBeDifferent) {
@@ -281,7 +281,7 @@ TEST(JoinPieces, ArraysThatAPieceLacksAreLeftOut) {
     EXPECT_EQ(whole.arrays[0].name, "f");
     EXPECT_EQ(whole.arrays[0].values.size(), 45U);
     for (const std::string name : {"c", "p", "f"}) {
-        EXPECT_THAT(whole.warnings, Contains("array \"" + name + "\" is not in every piece: ignored"));
+        EXPECT_THAT(whole.warnings, Contains("array \"" + name + "\" ignored: it is not in every piece"));
     }
     EXPECT_EQ(std::ranges::count(whole.warnings, "said once"), 1);
     EXPECT_EQ(whole.unread.size(), 1U);

@@ -100,14 +100,17 @@ TEST(FileContents, TheLastStepIsReadUnlessOneIsChosen) {
 
 TEST(FileContents, ManyThingsAreListedInOneSentence) {
     std::vector<std::string> warnings;
+    std::vector<IgnoredPart> ignored;
     LeftOut few, many;
-    few.report("field", "fields", warnings);
+    few.report("field", "fields", warnings, ignored);
     few.add("T", "it is damaged");
-    few.report("field", "fields", warnings);
+    few.report("field", "fields", warnings, ignored);
     for (int k = 0; k < 9; ++k) many.add("f" + std::to_string(k), k == 0 ? "first" : "later");
-    many.report("field", "fields", warnings);
+    many.report("field", "fields", warnings, ignored);
     EXPECT_THAT(warnings, ElementsAre("field \"T\" left out: it is damaged",
                                       "9 fields left out (\"f0\", \"f1\", \"f2\", \"f3\", \"f4\", \"f5\", …): first"));
+    ASSERT_EQ(ignored.size(), 10U);
+    EXPECT_EQ(ignored[9].kind + ignored[9].name + ignored[9].reason, "fieldf8later");
     NamesApart apart("array");
     std::set<std::string> names;
     for (int k = 0; k < 3; ++k) {
@@ -147,8 +150,10 @@ TEST(FileContents, FacesAndEdgesOfCellsAreNoShells) {
     MeshFile copy = shells;
     EXPECT_EQ(drop_parts_of_cells(copy, true), (std::array<std::size_t, 2>{0, 0}));
     EXPECT_EQ(drop_parts_of_cells(shells, false), (std::array<std::size_t, 2>{5, 2}));
-    EXPECT_EQ(error_of([&] { add_left_out_warning(shells, "2 vertices", "a.vtk"); }),
-              "a.vtk: no hexahedra, but 2 vertices, which are ignored");
+    EXPECT_EQ(error_of([&] {
+                  add_left_out_warning(shells, {{"cell type", "VERTEX", 2}}, "a.vtk");
+              }),
+              "a.vtk: no hexahedra, but 2 elements of type VERTEX, which are ignored");
 }
 
 TEST(LocalSystems, AnglesAreThoseOfTheirAxes) {

@@ -117,8 +117,8 @@ TEST_F(GmshIo, FieldsAtNodes) {
     EXPECT_EQ(result.mesh.find_attribute("my field")->values[2], 30);
     EXPECT_EQ(result.mesh.find_attribute("v")->channels, 3);
     EXPECT_EQ(result.mesh.find_attribute("v")->values[35], -12);
-    EXPECT_THAT(result.warnings, ElementsAre("array \"part\" has no value at 11 nodes: ignored",
-                                             "array \"e\" has no value at 1 element: ignored"));
+    EXPECT_THAT(result.warnings, ElementsAre("array \"part\" ignored: it has no value at 11 nodes",
+                                             "array \"e\" ignored: it has no value at 1 element"));
     EXPECT_THAT(read_error(gmsh_text(kBox, "0") + replaced(data, "\n12 120\n", "\n5 120\n")),
                 HasSubstr("array \"my field\": line 8: node 5 has a value already"));
     EXPECT_THAT(read_error(gmsh_text(kBox, "0") + replaced(data, "1\n0.5\n", "1\nnan\n")),

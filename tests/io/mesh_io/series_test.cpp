@@ -133,7 +133,7 @@ TEST_F(Series, ArraysThatAPieceLacksAreLeftOut) {
     write("b.vtu", row(1, 1));
     const ReadResult result = read_mesh(write("all.pvtu", pieces({"a.vtu", "b.vtu"})));
     expect_row(result, 2);
-    EXPECT_THAT(result.warnings, Contains("array \"extra\" is not in every piece: ignored"));
+    EXPECT_THAT(result.warnings, Contains("array \"extra\" ignored: it is not in every piece"));
     EXPECT_EQ(result.mesh.attributes.size(), 1u);
 }
 

@@ -331,8 +331,21 @@ TEST_F(Cgns, CurvedElementsAreFollowed) {
     EXPECT_NEAR(inspect(read_mesh(path("a.cgns")).mesh).volume, 1.5 * std::numbers::pi / 8, 2e-4);
 }
 
+TEST_F(Cgns, NodesThatNobodyReadsAreListed) {
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.block("A", 0);
+        file.block("B", 3);
+        file.node("/Base/Steel", "Family_t");
+        file.node("/Base/B/Rough", "DiscreteData_t");
+    }
+    std::vector<std::string> listed;
+    for (const IgnoredPart& part : read_mesh(path("a.cgns")).ignored) listed.push_back(part.kind + " " + part.name);
+    EXPECT_THAT(listed, ElementsAre("Family_t /Base/Steel", "DiscreteData_t /Base/B/Rough"));
+}
+
 TEST_F(Cgns, WrongFilesGetASentence) {
-    EXPECT_THAT(error([](CgnsWriter&) {}), HasSubstr("no hexahedra in any of its zones"));
+    EXPECT_THAT(error([](CgnsWriter&) {}), HasSubstr("no hexahedra"));
     EXPECT_THAT(error([](CgnsWriter& file) {
                     file.node("/Base/Zone", "Zone_t", Numbers{1000000000000, 1, 0});
                 }),

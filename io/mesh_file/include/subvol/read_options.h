@@ -135,6 +135,15 @@ struct UnreadField {
     std::string why;  ///< what could not be read, such as a value that is not finite
 };
 
+/// A part of a file that was not taken: what the mesh and its fields would have lost has a warning, too; of other parts, such
+/// as the loads of an input deck, nothing else tells.
+struct IgnoredPart {
+    std::string kind;         ///< the format's word for such parts: "keyword", "section", "array", "element type"
+    std::string name;         ///< as in the file
+    std::size_t count = 1;    ///< how many the file has under this name
+    std::string reason = {};  ///< why, or where the reader found out; empty: parts of this kind are never taken
+};
+
 struct ReadResult {
     HexMesh mesh;  ///< validated; the values at points of a cell array are volume-weighted means over incident cells
     std::vector<FieldInfo> fields;
@@ -163,6 +172,7 @@ struct ReadResult {
     std::vector<Attribute> incomplete = {};
     /// Patches of the boundary and sets of cells, of formats that have them: what lies inside the mesh is left out
     MeshSets sets = {};
+    std::vector<IgnoredPart> ignored = {};  ///< parts of the file of which nothing was taken
 };
 
 }  // namespace subvol

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a file has that is not taken: `info --ignored` lists it, for every format, with what the file itself says of it."""
+
+import unittest
+
+from command import CUBE, InFolder, X_AND_Z, subvol
+from patches_test import CELLS, INP, MSH2, POINTS, foam, netcdf, write_foam
+
+VTU = """<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid>
+<FieldData><DataArray type="Float64" Name="energy" NumberOfTuples="1" format="ascii">7</DataArray></FieldData>
+<Piece NumberOfPoints="8" NumberOfCells="1"><Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+{x} 0 0 {y} 0 0 {y} 1 0 {x} 1 0 {x} 0 1 {y} 0 1 {y} 1 1 {x} 1 1</DataArray></Points><Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 4 5 6 7</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">8</DataArray><DataArray type="UInt8" Name="types" format="ascii">12</DataArray>
+</Cells><CellData><Array type="String" Name="names" format="ascii">65 0</Array></CellData></Piece></UnstructuredGrid></VTKFile>"""
+
+
+class Ignored(InFolder):
+    def listed(self, file, *more):
+        """(kind, name, count) of each part, and that the lines say the same as --json, alone and beside the figures."""
+        found = self.run_ok("info", file, "--ignored", "--json", *more).json()
+        self.assertNotIn("cells", found)
+        self.assertEqual(self.run_ok("info", file, "--json", *more).json()["ignored"], found["ignored"])
+        lines = self.run_ok("info", file, "--ignored", *more).out.splitlines()
+        self.assertEqual(lines, ["  ".join(str(part[key]) for key in ("kind", "name", "count", "reason") if key in part)
+                                 for part in found["ignored"]])
+        self.reasons = {part["name"]: part.get("reason", "") for part in found["ignored"]}
+        return {(part["kind"], part["name"], part["count"]) for part in found["ignored"]}
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def test_abaqus(self):
+        text = (INP + "*ELEMENT, TYPE=S4R\n7, 1, 2, 6, 5\n*ELEMENT, TYPE=MASS\n8, 1\n*NSET, NSET=lost\nnowhere\n*SURFACE, TYPE=NODE, NAME=s\nends\n"
+                "*Material, name=steel\n*Elastic\n210000, .3\n*STEP\n*STATIC\n*Boundary\n1, 1, 3\n*Boundary\n2, 1\n*Dload\nends, P1, 1\n*END STEP\n")
+        found = self.listed(self.write("a.inp", text))
+        self.assertEqual(found, {("keyword", "*MATERIAL", 1), ("keyword", "*ELASTIC", 1), ("keyword", "*STEP", 1), ("keyword", "*STATIC", 1),
+                                 ("keyword", "*BOUNDARY", 2), ("keyword", "*DLOAD", 1), ("keyword", "*ENDSTEP", 1), ("element type", "S4R", 1),
+                                 ("element type", "MASS", 1), ("set of nodes", "lost", 1), ("surface", "s", 1),
+                                 ("surface", "nodes", 1), ("patch", "inside", 1)})
+        self.assertIn("it is of type NODE", self.reasons["s"])
+        self.assertNotIn("BOUNDARY", self.run_ok("info", "a.inp").err)
+
+    def test_exodus(self):
+        sizes = {"num_dim": 3, "num_nodes": len(POINTS), "num_elem": 3, "num_el_blk": 1, "num_el_in_blk1": 3, "num_nod_per_el1": 8, "len": 4}
+        (self.folder / "a.exo").write_bytes(netcdf(
+            sizes, [("coord" + "xyz"[a], ["num_nodes"], "d", [p[a] for p in POINTS]) for a in range(3)] +
+            [("connect1", ["num_el_in_blk1", "num_nod_per_el1"], "i", [p + 1 for cell in CELLS for p in cell]),
+             ("elem_map", ["num_elem"], "i", [3, 2, 1]), ("info_records", ["len"], "c", b"none")]))
+        self.assertEqual(self.listed("a.exo"), {("variable", "elem_map", 1), ("variable", "info_records", 1)})
+
+    def test_gmsh(self):
+        text = MSH2 + "$Periodic\n0\n$EndPeriodic\n$InterpolationScheme\n0\n$EndInterpolationScheme\n$ElementNodeData\n0\n$EndElementNodeData\n"
+        found = self.listed(self.write("a.msh", text))
+        self.assertLessEqual({("section", "$Periodic", 1), ("section", "$InterpolationScheme", 1), ("section", "$ElementNodeData", 1)}, found)
+        err = self.run_ok("info", "a.msh").err
+        self.assertIn('section "$ElementNodeData" ignored', err)
+        self.assertNotIn("$Periodic", err)
+
+    def test_medit(self):
+        text = CUBE.format(last=8).replace("End\n", "Corners\n2\n1\n2\nTetrahedra\n1\n1 2 3 5 0\nEnd\n")
+        self.assertEqual(self.listed(self.write("a.mesh", text), "--other-cells", "ignore"), {("section", "Corners", 2), ("section", "Tetrahedra", 1)})
+
+    def test_legacy_vtk(self):
+        text = (X_AND_Z + "LOOKUP_TABLE reds 1\n1 0 0 1\nFIELD more 2\nnames 1 8 string\na\nb\nc\nd\ne\nf\ng\nh\nless 1 3 double\n1 2 3\n")
+        text = text.replace("POINTS 8", "FIELD FieldData 1\nTIME 1 1 double\n2.5\nPOINTS 8")
+        found = self.listed(self.write("a.vtk", text))
+        self.assertEqual(found - {("array", "TIME", 1)}, {("lookup table", "reds", 1), ("array", "names", 1), ("field", "less", 1)})
+        self.assertIn("has 3 tuples (8 are needed)", self.reasons["less"])
+
+    def test_vtu_alone_and_in_pieces(self):
+        alone = {("array", "energy", 1), ("array", "names", 1)}
+        self.assertEqual(self.listed(self.write("a.vtu", VTU.format(x=0, y=1))), alone)
+        self.write("b.vtu", VTU.format(x=1, y=2))
+        self.write("c.vtp", '<VTKFile type="PolyData"><PolyData/></VTKFile>')
+        files = "".join(f'<DataSet index="{i}" file="{name}"/>' for i, name in enumerate(("a.vtu", "b.vtu", "c.vtp")))
+        self.write("a.vtm", f'<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>{files}</vtkMultiBlockDataSet></VTKFile>')
+        self.assertEqual(self.listed("a.vtm"), {(kind, name, 2) for kind, name, _ in alone} | {("file", "c.vtp", 1)})
+
+    def test_the_time_of_one_file(self):
+        vtu = VTU.format(x=0, y=1).replace('"energy"', '"TimeValue"')
+        vtk = X_AND_Z.replace("POINTS 8", "FIELD FieldData 2\nCYCLE 1 1 int\n4\nTIME 1 1 double\n2.5\nPOINTS 8")
+        for name, text, time, others in (("a.vtu", vtu, 7, {"names"}), ("a.vtk", vtk, 2.5, {"CYCLE"}), ("n.vtu", vtu.replace(">7<", ">nan<"), 0, {"names"}),
+                                         ("two.vtu", vtu.replace('NumberOfTuples="1" format="ascii">7', 'NumberOfTuples="2" format="ascii">7 8'), 0,
+                                          {"names", "TimeValue"})):
+            with self.subTest(name):
+                self.assertEqual({part[1] for part in self.listed(self.write(name, text))}, others)
+                self.assertEqual(self.run_ok("info", name, "--json").json()["times"], [time])
+                done = subvol("probe", name, "--at", ".5,.5,.5", "--field", "2*time", "--json", folder=self.folder)
+                if time == 0:
+                    self.assertEqual(done.code, 2)
+                    self.assertIn("the mesh has no time", done.err)
+                else:
+                    self.assertAlmostEqual(done.json()["values"][0]["value"], 2 * time, delta=1e-12)
+
+    def test_ensight(self):
+        columns = "".join(f"{c:12.5e}\n" for axis in zip(*POINTS) for c in axis)
+        cells = "".join("".join(f"{n + 1:10d}" for n in cell) + "\n" for cell in CELLS)
+        self.write("a.geo", f"a\nb\nnode id off\nelement id off\npart\n{1:10d}\np\ncoordinates\n{len(POINTS):10d}\n{columns}hexa8\n{3:10d}\n{cells}"
+                            f"quad4\n{1:10d}\n" + "".join(f"{n:10d}" for n in (1, 2, 6, 5)) + "\n")
+        self.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nconstant per case: gamma 1.4\n"
+                             "scalar per measured node: drops a.d\nMATERIAL\nmaterial id count: 2\n")
+        self.assertEqual(self.listed("a.case"), {("constant", "gamma", 1), ("variable", "drops a.d", 1), ("section", "material", 1), ("element type", "quad4", 1)})
+        self.assertIn('variable "drops a.d" ignored', self.run_ok("info", "a.case").err)
+
+    def test_xdmf(self):
+        points = " ".join(f"{x} {y} {z}" for x, y, z in POINTS)
+        cells = " ".join(str(n) for cell in CELLS for n in cell)
+        self.write("a.xmf", f"""<Xdmf><Domain><Grid><Information Name="who" Value="me"/><Topology TopologyType="Hexahedron" NumberOfElements="3">
+<DataItem Dimensions="3 8" Format="XML">{cells}</DataItem></Topology><Geometry GeometryType="XYZ"><DataItem Dimensions="16 3" Format="XML">{points}</DataItem></Geometry>
+<Attribute Name="whole" Center="Grid"><DataItem Dimensions="1" Format="XML">5</DataItem></Attribute></Grid></Domain></Xdmf>""")
+        self.assertEqual(self.listed("a.xmf"), {("Information", "who", 1), ("array", "whole", 1)})
+
+    def test_frd(self):
+        from field_gaps_test import frd
+        text = frd(POINTS, CELLS, [[("T", {n: p[0] for n, p in enumerate(POINTS)})]])
+        first, rest = text.split("\n", 1)
+        self.write("a.frd", f"{first}\n    1UPGM               CalculiX\n{rest}")
+        self.assertIn(("record", "1UPGM               CalculiX", 1), self.listed("a.frd"))
+
+    def test_openfoam(self):
+        write_foam(self.folder / "case")
+        (self.folder / "case" / "0" / "phi").write_text(foam("phi", "surfaceScalarField", "internalField uniform 0;"))
+        self.write("case/0/notes.txt", "nothing of OpenFOAM")
+        self.assertEqual(self.listed("case"), {("field", "phi", 1), ("file", "notes.txt", 1)})
+        self.assertEqual(self.reasons["phi"], "it is of class surfaceScalarField")
+
+    def test_what_has_no_such_parts(self):
+        done = self.run_ok("info", self.write("a.mesh", CUBE.format(last=8)), "--ignored")
+        self.assertEqual(done.out, "")
+        self.assertIn("no part of the file", done.err)
+        self.run_ok("points", "model:twist", "-o", "a.ply")
+        done = subvol("info", "a.ply", "--ignored", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("--ignored", done.err)
+        self.assertEqual(subvol("info", "--gl", "--ignored", folder=self.folder).code, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
