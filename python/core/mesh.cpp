@@ -277,6 +277,16 @@ py::object cell_sets_of(const py::object& self) {
     return read_only(sets, "the sets of a mesh");
 }
 
+py::object node_sets_of(const py::object& self) {
+    py::dict sets;
+    for (const NodeSet& set : sets_of(self).nodes) {
+        std::vector<Index> points = points_of(self.cast<const HexMesh&>(), set);
+        const py::ssize_t count = length(points.size());
+        sets[py::str(set.name)] = read_only(owned(std::move(points), {count}));
+    }
+    return read_only(sets, "the sets of nodes of a mesh");
+}
+
 /// The mesh with other fields, and all else that it has.
 py::object with_fields(const py::object& self, const py::object& fields) {
     const auto& mesh = self.cast<const HexMesh&>();
@@ -362,8 +372,19 @@ py::dict write_series(const std::string& path, const std::vector<double>& times,
 
 constexpr const char* kSets = "_sets";
 
+/// What pickles hold of the sets of nodes, by name (n,2): the cells and their corners as bits.
+py::dict corners_of_node_sets(const py::object& self) {
+    py::dict sets;
+    for (const NodeSet& set : sets_of(self).nodes) {
+        std::vector<Index> rows;
+        for (const CellCorners& of_cell : set.cells) rows.insert(rows.end(), {of_cell.cell, Index{of_cell.corners}});
+        sets[py::str(set.name)] = owned(std::move(rows), {length(set.cells.size()), 2});
+    }
+    return sets;
+}
+
 /// The patches and sets of a pickled mesh.
-MeshSets sets_from(const py::object& patches, const py::object& cells, const HexMesh& mesh) {
+MeshSets sets_from(const py::object& patches, const py::object& cells, const py::object& nodes, const HexMesh& mesh) {
     MeshSets sets;
     for_each_named(patches, "patches", [&](const std::string& name, const py::handle& rows) {
         Patch& patch = sets.patches.emplace_back(Patch{.name = name, .sides = {}});
@@ -376,6 +397,12 @@ MeshSets sets_from(const py::object& patches, const py::object& cells, const Hex
         const py::array_t<std::int64_t> given = numbers<std::int64_t>(numbers_of_cells, name);
         for (py::ssize_t i = 0; i < given.size(); ++i)
             set.cells.push_back(std::in_range<Index>(given.at(i)) ? static_cast<Index>(given.at(i)) : kNone);
+    });
+    for_each_named(nodes, "sets of nodes", [&](const std::string& name, const py::handle& rows) {
+        NodeSet& set = sets.nodes.emplace_back(NodeSet{.name = name, .cells = {}});
+        constexpr Index kAllCorners = 255;
+        for (const auto& [cell, corners] : index_rows<2>(rows, std::max<std::size_t>(mesh.cells.size(), kAllCorners + 1), name))
+            set.cells.push_back({cell, static_cast<std::uint8_t>(std::min(corners, kAllCorners))});
     });
     validate(sets, mesh);
     return sets;
@@ -420,6 +447,7 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly("cell_fields", &cell_fields_of)
         .def_property_readonly("patches", &patches_of)
         .def_property_readonly("sets", &cell_sets_of)
+        .def_property_readonly("node_sets", &node_sets_of)
         .def_property_readonly("bounds", [](const HexMesh& mesh) { return read_only(as_array(bounds(mesh))); })
         .def("report", &figures_of)
         .def("boundary",
@@ -446,14 +474,15 @@ void bind_mesh(py::module_& module) {
             [](const py::object& self) {
                 return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),
                                       self.attr("sharp_faces"), self.attr("patches"), self.attr("sets"),
-                                      rest_of_fields(self.cast<const HexMesh&>()));
+                                      corners_of_node_sets(self), rest_of_fields(self.cast<const HexMesh&>()));
             },
             [](const py::tuple& state) {
-                if (state.size() != 8) throw Error(ErrorCode::InvalidInput, "is not a mesh of this version", "pickle");
+                if (state.size() != 9) throw Error(ErrorCode::InvalidInput, "is not a mesh of this version", "pickle");
                 HexMesh mesh = mesh_of(state[0], state[1], state[2], state[3], state[4], py::none());
-                put_rest_of_fields(state[7], mesh);
+                put_rest_of_fields(state[8], mesh);
                 py::dict attributes;
-                if (MeshSets sets = sets_from(state[5], state[6], mesh); !sets.empty()) attributes[kSets] = std::move(sets);
+                MeshSets sets = sets_from(state[5], state[6], state[7], mesh);
+                if (!sets.empty()) attributes[kSets] = std::move(sets);
                 return std::pair(std::move(mesh), attributes);
             }));
 
@@ -483,6 +512,18 @@ void bind_mesh(py::module_& module) {
                 std::vector<std::uint8_t> in_set(cells, 0);
                 for (const Index c : set.cells) in_set[c] = 1;
                 arrays[py::str(vtk_set_array(set))] = owned(std::move(in_set), {length(cells)});
+            }
+            return arrays;
+        },
+        py::arg("mesh"));
+    module.def(
+        "vtk_node_arrays",
+        [](const HexMesh& mesh) {
+            py::dict arrays;
+            for (const NodeSet& set : sets_of(mesh).nodes) {
+                std::vector<std::uint8_t> in_set(mesh.points.size(), 0);
+                for (const Index p : points_of(mesh, set)) in_set[p] = 1;
+                arrays[py::str(vtk_node_array(set))] = owned(std::move(in_set), {length(mesh.points.size())});
             }
             return arrays;
         },

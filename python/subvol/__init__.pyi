@@ -373,7 +373,7 @@ def read_mesh(
     read but meshio or VTK do (MED, Nastran, Tecplot, LS-DYNA, Fluent and others) are read by these in a child process, without their sets.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
-    `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
+    `mesh.sets`, by name (n,): cells, and in `mesh.node_sets`, by name (n,): points. `warp`, `only`, `subdivide` and `write_mesh` keep them.
 
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     other_cells: what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse [split,

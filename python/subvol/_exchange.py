@@ -130,7 +130,7 @@ def _faces_of(grid: Any, types: Any) -> tuple[list[int], list[int]]:
 
 
 def to_vtk(mesh: HexMesh) -> Any:
-    """A `vtkUnstructuredGrid` with all fields, and creases, sharp faces, patches and sets of cells as `.vtu` files have them (docs/formats.md).
+    """A `vtkUnstructuredGrid` with all fields, and creases, sharp faces, patches and sets of cells and nodes as `.vtu` files have them (docs/formats.md).
 
     Its points and fields are this mesh's memory: nothing may write to them.
     """
@@ -155,4 +155,8 @@ def to_vtk(mesh: HexMesh) -> Any:
         array = support.numpy_to_vtk(numbers, deep=True)
         array.SetName(name)
         (grid.GetFieldData() if _core.is_vtk_field_array(name) else grid.GetCellData()).AddArray(array)
+    for name, inside in _core.vtk_node_arrays(mesh).items():
+        array = support.numpy_to_vtk(inside, deep=True)
+        array.SetName(name)
+        grid.GetPointData().AddArray(array)
     return grid

@@ -22,7 +22,7 @@ def read_mesh(path: Path, *, clamp: Optional[str] = None, **options: Any) -> Hex
     read but meshio or VTK do (MED, Nastran, Tecplot, LS-DYNA, Fluent and others) are read by these in a child process, without their sets.
 
     The names of the file are in `mesh.patches`, by name (n,2): a cell and its side, u=0, u=1, v=0, v=1, w=0 or w=1, and in
-    `mesh.sets`, by name (n,): cells. `warp`, `only`, `subdivide` and `write_mesh` keep them.
+    `mesh.sets`, by name (n,): cells, and in `mesh.node_sets`, by name (n,): points. `warp`, `only`, `subdivide` and `write_mesh` keep them.
 
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
@@ -113,7 +113,7 @@ def only(mesh: HexMesh, *regions: str, levels: int = 0) -> HexMesh:
     more than 1 % of its size or volume near the cut. `measure(only=)` takes the part out of the whole itself.
 
     regions: "box:x0,y0,z0,x1,y1,z1", "sphere:x,y,z,r", "half:px,py,pz,nx,ny,nz" (cells by their centres; a plane's normal points into
-             the half), "set:A,B": the cells of `mesh.sets`, "where:T>500": a quantity that is not 0 at half of a cell's corners
+             the half), "set:A,B": the cells of `mesh.sets`, "nodes:A": those that have a point of `mesh.node_sets`, "where:T>500": a quantity that is not 0 at half of a cell's corners
              or more, or "fold:folded,open": the cells with these verdicts of `check_folds`
     levels:  0 to 4: the most that the cells are refined in the whole before they are taken (each level makes 8 of one, up to 200,000):
              until places near the cut are within 0.1 % of the part's size of where they are in the limit of the whole, by the

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes of other packages."""
+import pickle
 from types import SimpleNamespace
 
 import numpy as np
@@ -118,6 +119,8 @@ def test_vtk_grids_keep_patches_and_sets(tmp_path, ball):
 1,1,2,3,4,5,6,7,8
 *SURFACE, NAME=top
 1, S2
+*NSET, NSET=edge
+1, 2
 """)
     cube = subvol.read_mesh(tmp_path / "a.inp")
     subvol.write_mesh(cube, tmp_path / "a.vtu")
@@ -128,7 +131,12 @@ def test_vtk_grids_keep_patches_and_sets(tmp_path, ball):
     for again in subvol.from_vtk(subvol.to_vtk(cube)), subvol.read_mesh(tmp_path / "a.vtu"), subvol.from_vtk(reader.GetOutput()):
         assert {name: sides.tolist() for name, sides in again.patches.items()} == {"top": [[0, 5]]}
         assert {name: list(cells) for name, cells in again.sets.items()} == {"cube": [0]}
+        assert {name: list(points) for name, points in again.node_sets.items()} == {"edge": [0, 1]}
+    copy = pickle.loads(pickle.dumps(cube))
+    assert list(copy.node_sets["edge"]) == [0, 1] and list(subvol.read_mesh(tmp_path / "a.vtu").fields) == []
+    assert len(subvol.only(copy, "nodes:edge").cells) == 1
     fine = subvol.subdivide(cube, 1)
+    assert sorted(fine.points[fine.node_sets["edge"]][:, 0].tolist()) == [0, .5, 1] and not fine.points[fine.node_sets["edge"]][:, 1:].any()
     assert fine.patches["top"].tolist() == [[4, 5], [5, 5], [6, 5], [7, 5]] and list(fine.sets["cube"]) == list(range(8))
     assert np.allclose(fine.points[fine.cells[4:, 4:]][..., 2], 1)
     odd = subvol.to_vtk(ball)

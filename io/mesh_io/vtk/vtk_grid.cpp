@@ -119,6 +119,10 @@ std::vector<VtkFieldArray> vtk_field_arrays(const HexMesh& mesh, const MeshSets&
     return arrays;
 }
 
+std::string vtk_node_array(const NodeSet& set) {
+    return detail::node_array_name(set);
+}
+
 std::string vtk_set_array(const CellSet& set) {
     return set_array_name(set);
 }

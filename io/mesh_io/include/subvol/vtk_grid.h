@@ -51,6 +51,8 @@ struct VtkUnstructuredGrid {
 [[nodiscard]] std::vector<VtkFieldArray> vtk_field_arrays(const HexMesh& mesh, const MeshSets& sets = {});
 /// The name of the array at the cells that is 1 in those of a set and 0 in the others: `set:` with the name of the set.
 [[nodiscard]] std::string vtk_set_array(const CellSet& set);
+/// The name of the array at points that has 1 at those of a set of nodes.
+[[nodiscard]] std::string vtk_node_array(const NodeSet& set);
 
 /// The mesh that `read_mesh` makes of a `.vtu` file with this grid: tetrahedra, prisms, pyramids and polyhedra are split,
 /// curved cells followed, ghost cells dropped, values at cells moved to the points, creases, sharp faces, patches and sets of
