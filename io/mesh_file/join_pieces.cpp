@@ -359,31 +359,76 @@ private:
                 if (!has_one && array.components == of_name.first->components) of_name.of_pieces.emplace_back(k, &array);
             }
         }
+        // Many pieces with an array each would be many arrays of all pieces.
+        constexpr std::size_t kFewGaps = 1 << 20, kGapsOfValue = 8;
+        std::size_t values = 0, with_gaps = 0;
+        for (const MeshFile& piece : pieces_) {
+            for (const FileArray& array : piece.arrays) values += array.values.size();
+        }
         for (const auto& [first, of_pieces] : named) {
-            const bool ghosts = first->name == kGhostArray;  // where it is missing there are none
-            if (!ghosts && of_pieces.size() < pieces_.size()) {
-                all_.ignore(not_everywhere(first->name, word_));
-                continue;
-            }
             std::vector<const FileArray*> parts(pieces_.size(), nullptr);
             for (const auto& [piece, array] : of_pieces) parts[piece] = array;
-            all_.arrays.push_back(joined(*first, parts));
+            if (first->name == kGhostArray || of_pieces.size() == pieces_.size()) {  // where there are no ghosts, it may lack
+                all_.arrays.push_back(joined(*first, parts, 0));
+                continue;
+            }
+            with_gaps += (first->at_cells ? cells_ : all_.points.size()) * static_cast<std::size_t>(first->components);
+            if (numbers_things(first->name) || with_gaps > kFewGaps + kGapsOfValue * values) {
+                all_.ignore(not_everywhere(first->name, word_));
+            } else {
+                add_with_gaps(*first, parts);
+            }
         }
     }
 
-    [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts) const {
+    [[nodiscard]] static bool numbers_things(std::string_view name) {
+        return std::ranges::find(kPointNumberArrays, name) != kPointNumberArrays.end() ||
+               std::ranges::find(kCellNumberArrays, name) != kCellNumberArrays.end();
+    }
+
+    // An array that some pieces lack has no value there. At points where pieces touch it has that of the piece that has it, so
+    // a piece without it may not have cells all of whose corners are such points: they would seem to have it.
+    void add_with_gaps(const FileArray& like, const std::vector<const FileArray*>& parts) {
+        const auto components = static_cast<std::size_t>(like.components);
+        FileArray array = joined(like, parts, std::numeric_limits<double>::quiet_NaN());
+        bool between = false;
+        if (!like.at_cells) {
+            std::vector<std::uint8_t> has_value(all_.points.size(), 0);
+            for (std::size_t k = 0; k < parts.size(); ++k) {
+                if (parts[k] == nullptr) continue;
+                for (std::size_t p = 0; p < places_[k].size(); ++p) {
+                    if (std::exchange(has_value[places_[k][p]], std::uint8_t{1}) != 0) continue;
+                    std::copy_n(&parts[k]->values[p * components], components, &array.values[places_[k][p] * components]);
+                }
+            }
+            for (std::size_t k = 0; k < parts.size(); ++k) {
+                if (parts[k] != nullptr) continue;
+                each_kind(pieces_[k], [&](const auto& cells) {
+                    for (const auto& corners : cells.corners)
+                        between = between || std::ranges::all_of(corners, [&](Index p) { return has_value[p] != 0; });
+                });
+            }
+        }
+        if (!between) return all_.arrays.push_back(std::move(array));
+        IgnoredPart part = not_everywhere(like.name, word_);
+        part.reason += ", and cells without it lie between those that have it";
+        all_.ignore(std::move(part));
+    }
+
+    // missing: the values of pieces that do not have the array
+    [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts, double missing) const {
         const auto components = static_cast<std::size_t>(like.components);
         FileArray array{like.name, like.components, like.at_cells, {}, like.unit, {}, like.integers};
         if (!like.at_cells) {
             array.values.reserve(all_.points.size() * components);
             for (const auto& [piece, p] : sources_) {
                 for (std::size_t c = 0; c < components; ++c) {
-                    array.values.push_back(parts[piece] ? parts[piece]->values[p * components + c] : 0);
+                    array.values.push_back(parts[piece] ? parts[piece]->values[p * components + c] : missing);
                 }
             }
             return array;
         }
-        array.values.resize(cells_ * components);
+        array.values.resize(cells_ * components, missing);
         for (std::size_t k = 0; k < parts.size(); ++k) {
             if (parts[k] == nullptr) continue;
             std::ranges::copy(parts[k]->values, array.values.data() + first_cells_[k] * components);

@@ -146,12 +146,62 @@ class MissingBlocksTest(InFolder):
         done = self.run_ok("info", "a.exo", "--json").json()
         self.assertEqual({f["name"]: (f["min"], f["max"], f.get("missing")) for f in done["fields"]},
                          {"flux": (3, 5, 1), "all": (1, 5, None)})
-        self.assertIn('array "none" is not in the blocks that are read', " ".join(done["warnings"]))
+        self.assertIn('array "none" ignored: it is not in the blocks that are read', " ".join(done["warnings"]))
         for more, mean in ([], 4), (["--cell-values", "constant"], 4):
             done = self.run_ok("probe", "a.exo", "--stats", "--field", "flux", "--scheme", "linear", "--json", *more).json()
             self.assertEqual(done["cells_with_field"], 2)
             self.assertAlmostEqual(done["stats"]["whole"]["volume"], 2, delta=1e-9)
             self.assertAlmostEqual(done["stats"]["whole"]["fields"][0]["mean"], mean, delta=1e-9)
+
+
+def cube_file(first_x, fields, cell_field=""):
+    """A cube from x = first_x on as a .vtu file; fields: functions of places, by name"""
+    points = [(x + first_x, y, z) for x, y, z in AROUND]
+    arrays = "".join(f'<DataArray type="Float64" Name="{name}" format="ascii">{" ".join(str(f(*p)) for p in points)}</DataArray>'
+                     for name, f in fields.items())
+    cells = f'<DataArray type="Float64" Name="{cell_field}" format="ascii">5</DataArray>' if cell_field else ""
+    return ('<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1"><Points>'
+            f'<DataArray type="Float64" NumberOfComponents="3" format="ascii">{" ".join(str(c) for p in points for c in p)}</DataArray></Points><Cells>'
+            '<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 4 5 6 7</DataArray>'
+            '<DataArray type="Int64" Name="offsets" format="ascii">8</DataArray><DataArray type="UInt8" Name="types" format="ascii">12</DataArray></Cells>'
+            f"<PointData>{arrays}</PointData><CellData>{cells}</CellData></Piece></UnstructuredGrid></VTKFile>")
+
+
+class BlocksWithFieldsOfTheirOwnTest(InFolder):
+    """A solid and a fluid beside it have other fields, and one in common."""
+
+    def write(self, *cubes):
+        for k, (fields, at_cells) in enumerate(cubes):
+            (self.folder / f"{k}.vtu").write_text(cube_file(k, {"h": lambda x, y, z: z, **fields}, at_cells))
+        blocks = "".join(f'<DataSet index="{k}" name="block{k}" file="{k}.vtu"/>' for k in range(len(cubes)))
+        (self.folder / "a.vtm").write_text(f'<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>{blocks}</vtkMultiBlockDataSet></VTKFile>')
+
+    def stats(self, field):
+        return self.run_ok("probe", "a.vtm", "--stats", "--field", field, "--scheme", "linear", "--json").json()
+
+    def test_each_field_is_that_of_its_block(self):
+        self.write(({"T": lambda x, y, z: x}, ""), ({"U": lambda x, y, z: 2 * x + z}, "W"))
+        found = {f["name"]: (f["min"], f["max"], f.get("missing")) for f in self.run_ok("info", "a.vtm", "--json").json()["fields"]}
+        self.assertEqual(found, {"h": (0, 1, None), "T": (0, 1, 4), "U": (2, 5, 4), "W": (5, 5, 1)})
+        for field, mean in ("T", .5), ("U", 3.5), ("W", 5), ("U+h", 4):
+            with self.subTest(field):
+                done = self.stats(field)
+                self.assertEqual(done["cells_with_field"], 1)
+                self.assertAlmostEqual(done["stats"]["whole"]["volume"], 1, delta=1e-9)
+                self.assertAlmostEqual(done["stats"]["whole"]["fields"][0]["mean"], mean, delta=1e-9)
+        self.assertAlmostEqual(self.stats("h")["stats"]["whole"]["volume"], 2, delta=1e-9)
+        done = subvol("probe", "a.vtm", "--stats", "--field", "T+U", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("no cell has 'T', 'U' at all of its points", done.err)
+
+    def test_a_block_between_two_that_have_it_does_not_seem_to_have_it(self):
+        with_t = {"T": lambda x, y, z: x}
+        self.write((with_t, ""), ({}, ""), (with_t, ""))
+        done = subvol("probe", "a.vtm", "--stats", "--field", "T", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn('array "T" ignored: it is not in every block, and cells without it lie between', self.run_ok("info", "a.vtm").err)
+        self.assertAlmostEqual(self.run_ok("probe", "a.vtm", "--blocks", "block2", "--stats", "--field", "T", "--scheme", "linear", "--json")
+                               .json()["stats"]["whole"]["fields"][0]["mean"], 2.5, delta=1e-9)
 
 
 class MissingStepsTest(InFolder):

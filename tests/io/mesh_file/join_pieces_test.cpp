@@ -268,23 +268,54 @@ TEST(JoinPieces, PartsOfTheSameNameBecomeOne) {
     ASSERT_EQ(whole.blocks.size(), 3U);
 }
 
-TEST(JoinPieces, ArraysThatAPieceLacksAreLeftOut) {
+TEST(JoinPieces, ArraysThatAPieceLacksHaveGaps) {
     std::vector<MeshFile> pieces = pieces_of_box();
-    add_at_points(pieces[0], "p", [](const Vec3&) { return 1; });
+    add_at_points(pieces[0], "p", [](const Vec3& x) { return 2 * x.x - x.z; });
     add_at_cells(pieces[1], "f", {1, 2, 3, 4});  // at the cells: not the one at the points
     pieces[2].arrays[1].components = 2;
     pieces[2].arrays[1].values.resize(8);
     pieces[0].warnings = pieces[1].warnings = {"said once"};
     pieces[0].unread = pieces[2].unread = {{"v", "why"}};
+    const std::vector<Vec3> of_first = pieces[0].points;
     const MeshFile whole = joined(pieces);
-    ASSERT_EQ(whole.arrays.size(), 1U);
-    EXPECT_EQ(whole.arrays[0].name, "f");
-    EXPECT_EQ(whole.arrays[0].values.size(), 45U);
-    for (const std::string name : {"c", "p", "f"}) {
-        EXPECT_THAT(whole.warnings, Contains("array \"" + name + "\" ignored: it is not in every piece"));
+    const FileArray* const at_points = find_array(whole, "p", false, 1);
+    ASSERT_NE(at_points, nullptr);
+    for (std::size_t p = 0; p < whole.points.size(); ++p) {
+        const Vec3& x = whole.points[p];
+        const double value = at_points->values[p];
+        if (std::ranges::find(of_first, x) != of_first.end()) {
+            EXPECT_EQ(value, 2 * x.x - x.z);
+        } else {
+            EXPECT_TRUE(std::isnan(value));
+        }
     }
+    const FileArray* const at_cells = find_array(whole, "f", true, 1);
+    ASSERT_NE(at_cells, nullptr);
+    EXPECT_EQ(std::ranges::count_if(at_cells->values, [](double value) { return std::isnan(value); }), 12);
+    EXPECT_THAT(std::vector(at_cells->values.begin() + 8, at_cells->values.begin() + 12), ElementsAre(1, 2, 3, 4));
+    EXPECT_EQ(find_array(whole, "c", true, 1)->values.size(), 16U) << "that of the third piece has two components";
+    EXPECT_EQ(find_array(whole, "f", false, 1)->values.size(), 45U);
     EXPECT_EQ(std::ranges::count(whole.warnings, "said once"), 1);
     EXPECT_EQ(whole.unread.size(), 1U);
+}
+
+// A layer of cells between two pieces has a value at each of its points, but it is not one of its own.
+TEST(JoinPieces, CellsBetweenThoseOfAnArrayDoNotHaveIt) {
+    std::vector<MeshFile> pieces;
+    for (int k = 0; k < 3; ++k) {
+        HexMesh box = make_box(1, 1, 1);
+        for (Vec3& x : box.points) x.x += k;
+        MeshFile& piece = pieces.emplace_back(file_of(box));
+        add_at_points(piece, "x", [](const Vec3& x) { return x.x; });
+        if (k != 1) add_at_points(piece, "T", [](const Vec3& x) { return 10 * x.x; });
+        if (k != 1) add_at_cells(piece, "at cells", {7});
+    }
+    const MeshFile whole = joined(pieces);
+    EXPECT_EQ(find_array(whole, "T", false, 1), nullptr);
+    EXPECT_THAT(whole.warnings,
+                Contains("array \"T\" ignored: it is not in every piece, and cells without it lie between those that have it"));
+    ASSERT_EQ(whole.ignored.size(), 1U);
+    EXPECT_THAT(find_array(whole, "at cells", true, 1)->values, ElementsAre(7, testing::IsNan(), 7));
 }
 
 TEST(JoinPieces, CellsAreCountedByAllThatNumbersThem) {

@@ -84,7 +84,7 @@ TEST_F(ManyNames, ManyArraysInOneFileAndInPieces) {
     ASSERT_EQ(joined.mesh.attributes.size(), std::size_t{kArrays - 1});
     EXPECT_EQ(joined.mesh.attributes[9998].name, "a9999");
     EXPECT_EQ(joined.mesh.attributes[9998].values[11], 9999);
-    EXPECT_THAT(joined.warnings, testing::Contains(HasSubstr("array \"a0\" ignored: it is not in every piece")));
+    EXPECT_THAT(joined.warnings, testing::Contains(HasSubstr("field \"a0\" has no value at 4 of 12 points")));
 }
 
 TEST_F(ManyNames, ManyBlocks) {

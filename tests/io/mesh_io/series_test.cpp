@@ -128,13 +128,15 @@ TEST_F(Series, GhostCellsOfPiecesAreDropped) {
     EXPECT_EQ(result.mesh.find_attribute("part")->values.back(), 2);
 }
 
-TEST_F(Series, ArraysThatAPieceLacksAreLeftOut) {
+TEST_F(Series, ArraysThatAPieceLacksHaveGaps) {
     write("a.vtu", row(0, 1, integers("extra", "0 1 2 3 4 5 6 7")));
     write("b.vtu", row(1, 1));
     const ReadResult result = read_mesh(write("all.pvtu", pieces({"a.vtu", "b.vtu"})));
     expect_row(result, 2);
-    EXPECT_THAT(result.warnings, Contains("array \"extra\" ignored: it is not in every piece"));
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("field \"extra\" has no value at 4 of 12 points")));
     EXPECT_EQ(result.mesh.attributes.size(), 1u);
+    ASSERT_EQ(result.incomplete.size(), 1u);
+    EXPECT_EQ(result.incomplete[0].values[7], 7);
 }
 
 TEST_F(Series, NamesOfBlocksHaveNoControlCharacters) {
