@@ -7,8 +7,10 @@
 #include <cctype>
 #include <cmath>
 
+#include "input.h"
 #include "quantities.h"
 #include "subvol/part_of_limit.h"
+#include "subvol/warp.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -18,11 +20,33 @@ namespace {
 std::vector<std::string> asked_quantities(const CommonOptions& options) {
     std::vector<std::string> asked = options.at_rest;
     if (options.field) asked.push_back(*options.field);
+    if (options.warp) asked.push_back(of_option("--warp", [&] { return parse_warp(*options.warp); }).field);
     return asked;
 }
 
-bool is_asked_for(const std::vector<std::string>& quantities, const std::string& field) {
-    return std::ranges::any_of(quantities, [&](const std::string& quantity) { return refers_to(quantity, field); });
+bool is_in_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) >= 128;
+}
+
+/// Whether a quantity is of a field: its name stands there, alone, with a component (V.x, V_x), and not as a part of the name
+/// of another field.
+bool refers_to(std::string_view quantity, std::string_view field, const std::vector<FieldInfo>& fields) {
+    if (quantity == field) return true;
+    for (std::size_t at = quantity.find(field); at != std::string_view::npos; at = quantity.find(field, at + 1)) {
+        if (at > 0 && (is_in_name(quantity[at - 1]) || quantity[at - 1] == '.')) continue;
+        std::size_t end = at + field.size();
+        if (end == quantity.size() || !is_in_name(quantity[end])) return true;
+        if (quantity[end] != '_') continue;
+        while (end < quantity.size() && is_in_name(quantity[end])) ++end;
+        const std::string_view word = quantity.substr(at, end - at);
+        if (std::ranges::find(fields, word, &FieldInfo::name) == fields.end()) return true;
+    }
+    return false;
+}
+
+bool is_asked_for(const std::vector<std::string>& quantities, const std::string& field, const ReadResult& read) {
+    return std::ranges::any_of(quantities,
+                               [&](const std::string& quantity) { return refers_to(quantity, field, read.fields); });
 }
 
 bool has_values(const Attribute& field, const HexMesh& mesh, std::size_t cell) {
@@ -37,25 +61,11 @@ bool has_values(const Attribute& field, const HexMesh& mesh, std::size_t cell) {
 
 }  // namespace
 
-bool refers_to(std::string_view quantity, std::string_view field) {
-    if (quantity == field) return true;
-    const auto in_name = [&](std::size_t at) {
-        const auto c = static_cast<unsigned char>(quantity[at]);
-        return std::isalnum(c) != 0 || c == '_' || c >= 128;
-    };
-    for (std::size_t at = quantity.find(field); at != std::string_view::npos; at = quantity.find(field, at + 1)) {
-        const std::size_t end = at + field.size();
-        const bool begins = at == 0 || (!in_name(at - 1) && quantity[at - 1] != '.');
-        if (begins && (end == quantity.size() || !in_name(end))) return true;
-    }
-    return false;
-}
-
 void refuse_unread(const ReadResult& read, const std::string& input, const CommonOptions& options) {
     const std::vector<std::string> asked = asked_quantities(options);
     for (const UnreadField& field : read.unread) {
         const bool other = std::ranges::find(read.fields, field.name, &FieldInfo::name) != read.fields.end();
-        if (other || !is_asked_for(asked, field.name)) continue;
+        if (other || !is_asked_for(asked, field.name, read)) continue;
         throw NoSuchField({ErrorCode::InvalidInput, field.why, text(input, ", field '", field.name, "'")});
     }
 }
@@ -65,7 +75,7 @@ Facts take_incomplete(ReadResult& read, const std::string& input, const CommonOp
     const std::vector<std::string> quantities = asked_quantities(options);
     std::vector<Attribute> asked;
     for (Attribute& field : read.incomplete) {
-        if (is_asked_for(quantities, field.name)) asked.push_back(std::move(field));
+        if (is_asked_for(quantities, field.name, read)) asked.push_back(std::move(field));
     }
     if (asked.empty()) return facts;
     HexMesh& mesh = read.mesh;

@@ -17,9 +17,6 @@ struct NoSuchField : Error {
     explicit NoSuchField(const Error& error) : Error(error) {}
 };
 
-/// Whether a quantity is of a field: its name stands there, not as a part of a longer name.
-[[nodiscard]] bool refers_to(std::string_view quantity, std::string_view field);
-
 /// throws: NoSuchField with the reason, if a field is asked for that could not be read
 void refuse_unread(const ReadResult& read, const std::string& input, const CommonOptions& options);
 

@@ -157,8 +157,11 @@ class MissingBlocksTest(InFolder):
 def cube_file(first_x, fields, cell_field=""):
     """A cube from x = first_x on as a .vtu file; fields: functions of places, by name"""
     points = [(x + first_x, y, z) for x, y, z in AROUND]
-    arrays = "".join(f'<DataArray type="Float64" Name="{name}" format="ascii">{" ".join(str(f(*p)) for p in points)}</DataArray>'
-                     for name, f in fields.items())
+    arrays = ""
+    for name, f in fields.items():
+        values = [f(*p) if isinstance(f(*p), tuple) else (f(*p),) for p in points]
+        arrays += (f'<DataArray type="Float64" Name="{name}" NumberOfComponents="{len(values[0])}" format="ascii">'
+                   f'{" ".join(str(c) for v in values for c in v)}</DataArray>')
     cells = f'<DataArray type="Float64" Name="{cell_field}" format="ascii">5</DataArray>' if cell_field else ""
     return ('<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1"><Points>'
             f'<DataArray type="Float64" NumberOfComponents="3" format="ascii">{" ".join(str(c) for p in points for c in p)}</DataArray></Points><Cells>'
@@ -180,9 +183,9 @@ class BlocksWithFieldsOfTheirOwnTest(InFolder):
         return self.run_ok("probe", "a.vtm", "--stats", "--field", field, "--scheme", "linear", "--json").json()
 
     def test_each_field_is_that_of_its_block(self):
-        self.write(({"T": lambda x, y, z: x}, ""), ({"U": lambda x, y, z: 2 * x + z}, "W"))
+        self.write(({"T": lambda x, y, z: x}, ""), ({"U": lambda x, y, z: 2 * x + z, "D": lambda x, y, z: (x / 2, 0, 0), "T_x": lambda x, y, z: 8}, "W"))
         found = {f["name"]: (f["min"], f["max"], f.get("missing")) for f in self.run_ok("info", "a.vtm", "--json").json()["fields"]}
-        self.assertEqual(found, {"h": (0, 1, None), "T": (0, 1, 4), "U": (2, 5, 4), "W": (5, 5, 1)})
+        self.assertEqual(found, {"h": (0, 1, None), "T": (0, 1, 4), "U": (2, 5, 4), "D": (.5, 1, 4), "T_x": (8, 8, 4), "W": (5, 5, 1)})
         for field, mean in ("T", .5), ("U", 3.5), ("W", 5), ("U+h", 4):
             with self.subTest(field):
                 done = self.stats(field)
@@ -190,6 +193,13 @@ class BlocksWithFieldsOfTheirOwnTest(InFolder):
                 self.assertAlmostEqual(done["stats"]["whole"]["volume"], 1, delta=1e-9)
                 self.assertAlmostEqual(done["stats"]["whole"]["fields"][0]["mean"], mean, delta=1e-9)
         self.assertAlmostEqual(self.stats("h")["stats"]["whole"]["volume"], 2, delta=1e-9)
+        moved = self.run_ok("probe", "a.vtm", "--stats", "--field", "h", "--warp", "D", "--scheme", "linear", "--json").json()
+        self.assertEqual(moved["cells_with_field"], 1)
+        self.assertAlmostEqual(moved["stats"]["whole"]["volume"], 1.5, delta=1e-9)
+        for name in "D_x", "D.x":
+            self.assertAlmostEqual(self.stats(name)["stats"]["whole"]["fields"][0]["mean"], .75, delta=1e-9)
+        self.assertAlmostEqual(self.stats("T_x")["stats"]["whole"]["volume"], 1, delta=1e-9)
+        self.assertAlmostEqual(self.stats("T_x")["stats"]["whole"]["fields"][0]["mean"], 8, delta=1e-9)
         done = subvol("probe", "a.vtm", "--stats", "--field", "T+U", folder=self.folder)
         self.assertEqual(done.code, 2)
         self.assertIn("no cell has 'T', 'U' at all of its points", done.err)
