@@ -1,25 +1,31 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares what we read of mesh files with what VTK and meshio read: volumes, and the ranges of all fields.
+"""Compares what we read of mesh files with what VTK and meshio read: numbers of cells, volumes, and the ranges of all fields.
 
     bench/readers.py FOLDER [--command build/release/bin/subvol] [--peer "python3 bench/peers/mesh_figures.py"] [--root ''] [--json OUT]
 
 All mesh files below the folder, and folders with polyMesh as cases of OpenFOAM. Prints a table: of each format the number of files that
-both read, and how many of these have equal volumes (to 1e-6) and ranges (to 1e-6 of the larger end); then each other file with the
-difference. --peer runs bench/peers/mesh_figures.py where VTK and meshio are; --root is taken from the front of the paths that it
+both read, and how many of these have the same number of cells, equal volumes (to 1e-6) and ranges (to 1e-6 of the larger end); then our
+refusals by their sentence, with numbers and names taken out, the files that ended the command otherwise, the longest run and the largest
+memory; then each other file with the difference. --peer runs bench/peers/mesh_figures.py where VTK and meshio are; --root is taken from the front of the paths that it
 gets, for a peer in a root of its own. Curved cells are compared by their corners.
 """
 import argparse
 import collections
 import json
+import os
 import pathlib
+import re
 import shlex
 import subprocess
 import tempfile
+import threading
+import time
 
-ENDS = (".vtk .vtu .vts .vtr .vti .pvtu .pvts .pvtr .pvti .vtm .e .exo .ex2 .g .gen .exii .case .vtkhdf .hdf .foam .cgns .msh .mesh "
+ENDS = (".vtk .vtu .vts .vtr .vti .pvtu .pvts .pvtr .pvti .vtm .vth .vthb .e .exo .ex2 .g .gen .exii .case .vtkhdf .hdf .foam .cgns .msh .mesh "
         ".meshb .inp .xdmf .xmf").split()
 TOLERANCE = 1e-6
+SECONDS = 300
 
 
 def files_of(folder):
@@ -32,17 +38,41 @@ def files_of(folder):
             yield case
 
 
+def cells_of(found):
+    """The cells of the file, of all kinds: a warning has their numbers where they were split into hexahedra."""
+    for warning in found["warnings"]:
+        if re.search(r" split into \d+ hexahedr", warning):
+            kinds = re.findall(r"(\d+) (?:hexahedr|tetrahedr|prism|pyramid)", re.split(r" cut into | split into ", warning)[0])
+            return sum(map(int, kinds))
+    return found["cells"]
+
+
 def ours_of(command, path):
     words = [*command, "info", "--json", "--curved", "corners", "--cell-values", "mean", str(path)]
-    try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=300)
-    except subprocess.TimeoutExpired:
-        return {"error": "more than 300 seconds"}
-    if done.returncode:
-        return {"error": done.stderr.strip().splitlines()[-1].replace(str(path), "") if done.stderr else str(done.returncode), "code": done.returncode}
-    found = json.loads(done.stdout)
-    return {"volume": found.get("volume", 0), "cells": found["cells"], "warnings": found["warnings"],
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        start = time.monotonic()
+        child = subprocess.Popen(words, stdout=out, stderr=err)
+        timer = threading.Timer(SECONDS, child.kill)
+        timer.start()
+        status, usage = os.wait4(child.pid, 0)[1:]
+        timer.cancel()
+        child.returncode = os.waitstatus_to_exitcode(status)
+        run = {"seconds": time.monotonic() - start, "peak_kb": usage.ru_maxrss, "code": child.returncode}
+        out.seek(0), err.seek(0)
+        printed, said = out.read(), err.read().decode(errors="replace").strip()
+    if run["seconds"] > SECONDS:
+        return {**run, "error": f"more than {SECONDS} seconds"}
+    if child.returncode:
+        return {**run, "error": said.splitlines()[-1].replace(str(path), "") if said else str(child.returncode)}
+    found = json.loads(printed)
+    return {**run, "volume": found.get("volume", 0), "cells": cells_of(found), "warnings": found["warnings"],
             "fields": {field["name"]: [field["min"], field["max"]] for field in found["fields"]}}
+
+
+def sentence_of(error):
+    """A refusal without what differs from file to file."""
+    text = re.sub(r"'[^']*'|\"[^\"]*\"|\S*/\S*", "…", error.removeprefix("subvol: "))
+    return re.sub(r"-?\d[\d.,e+-]*", "N", text)[:150]
 
 
 def differs(a, b):
@@ -50,8 +80,10 @@ def differs(a, b):
 
 
 def differences(ours, peer):
-    """What differs, as words; the kinds "volume", "range", "field" come first in each."""
+    """What differs, as words; the kinds "cells", "volume", "range" come first in each."""
     found = []
+    if ours["cells"] != peer["cells"] and not peer["polyhedra"]:
+        found.append(f"cells {ours['cells']}, by {peer['peer']} {peer['cells']}")
     if differs(ours["volume"], peer["volume"]):
         found.append(f"volume {ours['volume']:.9g}, by {peer['peer']} {peer['volume']:.9g}")
     for name, there in peer["fields"].items():
@@ -90,14 +122,22 @@ def main():
             continue
         row["both"] += 1
         found = [text for text in differences(ours, peer) if not (peer["curved"] and text.startswith("range"))]  # nodes that are left out
+        row["cells"] += not any(text.startswith("cells") for text in found)
         row["volumes"] += not any(text.startswith("volume") for text in found)
         row["ranges"] += not any(text.startswith("range") for text in found)
         told += [f"{name}: {text}" for text in found]
-    columns = ["files", "both", "volumes", "ranges", "ours alone", "peer alone", "neither"]
+    columns = ["files", "both", "cells", "volumes", "ranges", "ours alone", "peer alone", "neither"]
     print("| format |", " | ".join(columns), "|\n|" + "---|" * (len(columns) + 1))
     for end, row in sorted(table.items()):
         print(f"| `{end}` |", " | ".join(str(row[column]) for column in columns), "|")
     print("| all |", " | ".join(str(sum(row[column] for row in table.values())) for column in columns), "|\n")
+    refused = collections.Counter(sentence_of(r["ours"]["error"]) for r in records if r["ours"]["code"] == 2)
+    print("\n".join(f"{count} refused: {sentence}" for sentence, count in refused.most_common()), "\n")
+    print("\n".join(f"{r['name']}: exit code {r['ours']['code']}: {r['ours']['error']}" for r in records if r["ours"]["code"] not in (0, 2)))
+    if records:
+        slowest, largest = (max(records, key=lambda r: r["ours"][key]) for key in ("seconds", "peak_kb"))
+        print(f"longest: {slowest['ours']['seconds']:.1f} s, {slowest['name']}\n"
+              f"most memory: {largest['ours']['peak_kb'] / 1024:.0f} MiB, {largest['name']}\n")
     print("\n".join(told))
     if arguments.json:
         arguments.json.write_text(json.dumps(records))

@@ -59,9 +59,16 @@ public:
         }
         return bytes;
     }
-    [[nodiscard]] std::optional<std::string> text(const std::string& object, const std::string&) const override {
+    [[nodiscard]] std::optional<std::string> text(const std::string& object, const std::string& attribute) const override {
+        if (attribute == "GridDescription") return std::nullopt;
+        if (attribute == "Type" && sets_.contains(object + "/Level0/AMRBox")) return "OverlappingAMR";
         const auto found = labels_.find(object);
         return found == labels_.end() ? "UnstructuredGrid" : found->second;
+    }
+    /// A line for an attribute has an @ before its name.
+    [[nodiscard]] std::vector<double> reals(const std::string& object, const std::string& attribute) const override {
+        const auto found = sets_.find(object + "/@" + attribute);
+        return found == sets_.end() || found->second.values.size() > 16 ? std::vector<double>() : found->second.values;
     }
     [[nodiscard]] std::vector<std::int64_t> integers(const std::string&, const std::string&) const override { return {2, 0}; }
 

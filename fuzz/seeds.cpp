@@ -100,6 +100,15 @@ void add_vtkhdf(Seeds& seeds) {
                             "Steps/NumberOfParts 2 : 1 1\nSteps/PointDataOffsets/T 2 : 0 8\nSteps/CellOffsets 2 1 : 0 0\n");
 }
 
+void add_amr(Seeds& seeds) {
+    seeds.add("vtkhdf",
+              "@Origin 3 : 0 0 0\nLevel0/@Spacing 3 : 1 1 1\nLevel0/AMRBox 1 6 : 0 1 0 0 0 0\nLevel0/CellData/c 2 : 1 2\n"
+              "Level0/PointData/p 12 : 1 2 3 4 5 6 7 8 9 10 11 12\nLevel1/@Spacing 3 : .5 .5 .5\n"
+              "Level1/AMRBox 1 6 : 2 3 0 1 0 1\nLevel1/CellData/c 8 : 1 2 3 4 5 6 7 8\n"
+              "Steps/Values 1 : 0\nSteps/Level1/AMRBoxOffset 1 : 0\nSteps/Level1/NumberOfAMRBox 1 : 1\n"
+              "Steps/Level1/CellDataOffset/c 1 : 0\n");
+}
+
 void add_cgns(Seeds& seeds) {
     const std::string axes =
         "Base/Zone/GridCoordinates GridCoordinates_t\nBase/Zone/GridCoordinates/CoordinateX DataArray_t 8 : 0 1 1 0 0 1 1 0\n"
@@ -148,6 +157,10 @@ void add_cases(Seeds& seeds) {
         "foam",
         "T" + head + "volScalarField; }\ndimensions [0 1 0 0];\ninternalField uniform 3;\nboundaryField { a { type x; } }");
     seeds.add("foam", "U" + head + "volVectorField; }\ninternalField nonuniform List<vector> 2 ((1 2 3) (4 5 6));");
+    seeds.add("series",
+              "h<VTKFile type=\"vtkOverlappingAMR\"><vtkOverlappingAMR origin=\"0 0 0\"><Block level=\"0\" spacing=\"1 1 1\">"
+              "<DataSet amr_box=\"0 0 0 0 0 0\"/></Block><Block level=\"1\" spacing=\".5 .5 .5\">"
+              "<DataSet amr_box=\"0 1 0 1 0 1\" file=\"3.vti\"/></Block></vtkOverlappingAMR></VTKFile>");
     seeds.add("series",
               "d<VTKFile><Collection><DataSet timestep=\"0\" part=\"0\" file=\"1.vtu\"/><DataSet timestep=\"1\" "
               "file=\"2.vtu\"/></Collection></VTKFile>");
@@ -258,6 +271,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
     add_wavelets(seeds, mesh);
     add_steps(seeds);
     add_vtkhdf(seeds);
+    add_amr(seeds);
     add_cgns(seeds);
     add_decks(seeds);
     add_cases(seeds);

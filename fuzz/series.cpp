@@ -18,9 +18,12 @@ std::vector<CaseFile> files() {
     const std::string one = vtu.file(vtu.piece(mesh, ""));
     for (Vec3& x : mesh.points) x.x += 1;
     test::VtuText other;
-    return {{'1', "1.vtu", one}, {'2', "2.vtu", other.file(other.piece(mesh, ""))},
-            {'d', "a.pvd", ""},  {'s', "a.series", ""},
-            {'p', "a.pvtu", ""}, {'m', "a.vtm", ""}};
+    const std::string image =
+        "<VTKFile type=\"ImageData\"><ImageData Spacing=\".5 .5 .5\"><Piece Extent=\"0 2 0 2 0 2\"/></ImageData></VTKFile>";
+    return {{'1', "1.vtu", one},   {'2', "2.vtu", other.file(other.piece(mesh, ""))},
+            {'3', "3.vti", image}, {'d', "a.pvd", ""},
+            {'s', "a.series", ""}, {'p', "a.pvtu", ""},
+            {'m', "a.vtm", ""},    {'h', "a.vth", ""}};
 }
 
 }  // namespace
@@ -33,7 +36,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     folder.put(data, size);
     const char letter = size == 0 ? 'd' : static_cast<char>(data[0]);
     return fuzz::run([&] {
-        const char* name = letter == 's' ? "a.series" : letter == 'p' ? "a.pvtu" : letter == 'm' ? "a.vtm" : "a.pvd";
+        const char* name = letter == 's'   ? "a.series"
+                           : letter == 'p' ? "a.pvtu"
+                           : letter == 'm' ? "a.vtm"
+                           : letter == 'h' ? "a.vth"
+                                           : "a.pvd";
         const ReadResult result = read_mesh(folder.path(name));
         static_cast<void>(inspect(result.mesh));
     });

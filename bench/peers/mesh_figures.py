@@ -8,6 +8,8 @@ LIST has the path of a file a line. The figures of the last step: the peer; the 
 curved or polyhedra; their volume, each as the trilinear map of its corners; the least and the greatest value of each array, of vectors
 that of their lengths. `bench/readers.py` compares them with ours. Needs Debian's python3-vtk9 and python3-meshio.
 """
+import contextlib
+import importlib
 import json
 import os
 import sys
@@ -125,11 +127,14 @@ def vtk_reader(path):
     """The reader of a file, its steps and all arrays chosen; None if VTK has none in Python."""
     import vtk
     end, name = os.path.splitext(path)[1].lower(), str(path)
-    if end in (".vtu", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".pvti", ".vtm"):
+    if end in (".vtu", ".vts", ".vtr", ".vti", ".pvtu", ".pvts", ".pvtr", ".pvti", ".vtm", ".vth", ".vthb"):
         kinds = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vts": vtk.vtkXMLStructuredGridReader, ".vtr": vtk.vtkXMLRectilinearGridReader,
                  ".vti": vtk.vtkXMLImageDataReader, ".pvtu": vtk.vtkXMLPUnstructuredGridReader, ".pvts": vtk.vtkXMLPStructuredGridReader,
-                 ".pvtr": vtk.vtkXMLPRectilinearGridReader, ".pvti": vtk.vtkXMLPImageDataReader, ".vtm": vtk.vtkXMLMultiBlockDataReader}
+                 ".pvtr": vtk.vtkXMLPRectilinearGridReader, ".pvti": vtk.vtkXMLPImageDataReader, ".vtm": vtk.vtkXMLMultiBlockDataReader,
+                 ".vth": vtk.vtkXMLUniformGridAMRReader, ".vthb": vtk.vtkXMLUniformGridAMRReader}
         reader = kinds[end]()
+        if end.startswith(".vth"):
+            reader.SetMaximumLevelsToReadByDefault(0)
     elif end == ".vtk":
         reader = vtk.vtkDataSetReader()
         for switch in ("Scalars", "Vectors", "Normals", "Tensors", "TCoords", "Fields", "ColorScalars"):
@@ -220,7 +225,10 @@ def figures_of(path):
 
 
 def main():
-    """A child process for each file, because readers may end with it."""
+    """A child process for each file, because readers may end with it. The packages are loaded once, before."""
+    for package in "vtk", "vtk.util.numpy_support", "meshio":
+        with contextlib.suppress(ImportError):
+            importlib.import_module(package)
     for path in map(str.strip, sys.stdin):
         read_end, write_end = os.pipe()
         child = os.fork()

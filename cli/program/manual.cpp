@@ -58,8 +58,8 @@ sin(3*x)+z. A mesh without fields has the density 1.)"},
      {"FILES",
       R"(Which format a file has follows from its extension. Meshes: MEDIT .mesh and .meshb; VTK .vtk, .vtu, .vts, .vtr and
 .vti; Gmsh .msh; Plot3D .xyz and .p3d; Exodus II .e, .exo, .ex2 and .g; VTKHDF .vtkhdf and .hdf; XDMF .xdmf and .xmf; CGNS
-.cgns; CalculiX .frd; Abaqus .inp; EnSight .case; OpenFOAM .foam, or the folder of a case; lists of files .pvd, .series, .vtm and
-.pvtu; wavelets .svw. Points: .ply, .vtp, .svk and .vdb. Grids: .vdb. Pictures: .png and .exr, and what OpenImageIO reads.
+.cgns; CalculiX .frd; Abaqus .inp; EnSight .case; OpenFOAM .foam, or the folder of a case; lists of files .pvd, .series, .vtm, .vth
+and .pvtu; wavelets .svw. Points: .ply, .vtp, .svk and .vdb. Grids: .vdb. Pictures: .png and .exr, and what OpenImageIO reads.
 model:NAME and model:NAME:RESOLUTION generate a mesh.
 
 An output file is complete or absent: it is written under a temporary name beside its place, and takes its name when it is done. What

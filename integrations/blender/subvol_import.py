@@ -26,7 +26,7 @@ bl_info = {
     "category": "Import-Export",
 }
 
-MESHES = "*.mesh;*.vtk;*.vtu;*.pvd;*.vtm;*.vtkhdf;*.hdf;*.inp;*.msh;*.exo;*.e;*.xdmf;*.xmf;*.cgns;*.case;*.frd;*.off"
+MESHES = "*.mesh;*.vtk;*.vtu;*.pvd;*.vtm;*.vth;*.vthb;*.vtkhdf;*.hdf;*.inp;*.msh;*.exo;*.e;*.xdmf;*.xmf;*.cgns;*.case;*.frd;*.off"
 MOST_STOPS = 32  # of Blender's ColorRamp
 VIRIDIS = [(0, .267, .005, .329), (.125, .278, .176, .482), (.25, .231, .322, .545), (.375, .173, .443, .557), (.5, .129, .565, .553),
            (.625, .153, .678, .506), (.75, .361, .784, .388), (.875, .667, .863, .196), (1, .993, .906, .144)]

@@ -8,9 +8,13 @@
 //           ─► other     cut from the middle: each face into triangles from one of its points, each triangle and the middle a
 //                        tetrahedron; fields have the mean of the cell's points in the middle
 //
+// The middle is the mean of the points. Faces that are not flat may hide it from a triangle, whose tetrahedron would then lie
+// outside of the cell; it is moved towards the cell's points until it sees all triangles, if such a place is found.
+//
 // A face is cut alike by both of its cells: from its smallest point, or in faces of more than four points the smallest one
-// that gives no flat triangle. Two triangles of a cell at the same points cancel. Faces that a file does not give follow from
-// the hull of the corners: every plane through three of them that has all others on one side.
+// that gives no flat triangle and, where that can be, none that is turned over. Two triangles of a cell at the same points
+// cancel. Faces that a file does not give follow from the hull of the corners: every plane through three of them that has all
+// others on one side.
 #include "polyhedra.h"
 
 #include <algorithm>
@@ -79,25 +83,34 @@ std::optional<std::array<Index, N>> cone(const CellFaces& faces, const std::vect
 }
 
 // Turns a face so that triangles from its first point have areas: that is its smallest point, as of the quads of other cells,
-// but in faces of more points with some on a line the smallest one with such triangles. Both cells of a face choose alike.
+// but in faces of more points with some on a line, or with a corner that points inwards, the smallest one with such triangles,
+// of which none is turned over if there is a choice. Both cells of a face choose alike.
 void start_fan(std::vector<Index>& face, const std::vector<Vec3>& points) {
     std::rotate(face.begin(), std::ranges::min_element(face), face.end());
     if (face.size() <= 4) return;
     constexpr double kFlat = 1e-9;          // of the largest triangle
     constexpr std::size_t kMostTried = 64;  // a face of a hostile file may have any number of points
+    const auto normal_of = [&](const std::vector<Index>& fan, std::size_t i) {
+        const Vec3 a = points[fan[0]];
+        return glm::cross(points[fan[i]] - a, points[fan[i + 1]] - a);
+    };
+    Vec3 of_face(0.0);
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) of_face += normal_of(face, i);
+    if (const double length = glm::length(of_face); length > 0) of_face /= length;
     std::vector<Index> best = face, turned = face;
-    double most = -1;
+    int best_is = 0;  // 1: no triangle is flat, 2: and none is turned over
     for (std::size_t k = 0; k < std::min(face.size(), kMostTried); ++k) {
-        double least = HUGE_VAL, largest = 0;
+        double least = HUGE_VAL, least_along = HUGE_VAL, largest = 0;
         for (std::size_t i = 1; i + 1 < turned.size(); ++i) {
-            const Vec3 a = points[turned[0]], normal = glm::cross(points[turned[i]] - a, points[turned[i + 1]] - a);
+            const Vec3 normal = normal_of(turned, i);
             least = std::min(least, glm::length(normal));
+            least_along = std::min(least_along, glm::dot(normal, of_face));
             largest = std::max(largest, glm::length(normal));
         }
-        const bool sound = least > kFlat * largest;
-        if (sound ? most < 0 || turned[0] < best[0] : false) {
+        const int is = least_along > kFlat * largest ? 2 : least > kFlat * largest ? 1 : 0;
+        if (is > best_is || (is > 0 && is == best_is && turned[0] < best[0])) {
             best = turned;
-            most = least;
+            best_is = is;
         }
         std::rotate(turned.begin(), turned.begin() + 1, turned.end());
     }
@@ -117,6 +130,61 @@ double volume_of(const CellFaces& faces, const std::vector<Vec3>& points) {
         }
     }
     return volume;
+}
+
+// Triangles of a cell's surface as planes, with normals into the cell.
+class Inside {
+public:
+    void add(const Vec3& a, const Vec3& b, const Vec3& c) {
+        const Vec3 normal = glm::cross(b - a, c - a);
+        if (const double length = glm::length(normal); length > 0) planes_.push_back({a, normal / length});
+    }
+
+    // The triangle of which a place is farthest outside, or that is nearest; and the distance, below 0 outside.
+    [[nodiscard]] std::pair<std::size_t, double> least(const Vec3& x) const {
+        std::pair<std::size_t, double> found{0, HUGE_VAL};
+        for (std::size_t k = 0; k < planes_.size(); ++k) {
+            if (const double d = distance(k, x); d < found.second) found = {k, d};
+        }
+        return found;
+    }
+    [[nodiscard]] double distance(std::size_t plane, const Vec3& x) const {
+        return glm::dot(x - planes_[plane].first, planes_[plane].second);
+    }
+
+private:
+    std::vector<std::pair<Vec3, Vec3>> planes_;
+};
+
+// The weight of each of a cell's points in a place that sees all triangles: the mean if it does; else that moved again and
+// again towards the point that is farthest inside of the triangle that it sees least. Nothing if that does not find one.
+std::optional<std::vector<double>> weights_of_middle(const std::vector<Vec3>& points, const Inside& inside) {
+    constexpr int kMostMoves = 100;
+    constexpr double kRounding = 1e-12;
+    constexpr double kRoom = 1e-3;  // of the cell's size: so far inside is aimed at, and half of it is enough
+    std::vector<double> weights(points.size(), 1 / static_cast<double>(points.size()));
+    Box box;
+    Vec3 middle(0.0);
+    for (const Vec3& x : points) {
+        box.add(x);
+        middle += x / static_cast<double>(points.size());
+    }
+    const double room = kRoom * box.diagonal();
+    for (int move = 0; move < kMostMoves; ++move) {
+        const auto [plane, least] = inside.least(middle);
+        if (least >= (move == 0 ? -kRounding * box.diagonal() : room / 2)) return weights;
+        std::size_t farthest = 0;
+        for (std::size_t p = 1; p < points.size(); ++p) {
+            if (inside.distance(plane, points[p]) > inside.distance(plane, points[farthest])) farthest = p;
+        }
+        const double there = inside.distance(plane, points[farthest]);
+        if (!(there > room)) return {};
+        const double part = (room - least) / (there - least);
+        for (double& weight : weights) weight *= 1 - part;
+        weights[farthest] += part;
+        middle += part * (points[farthest] - middle);
+    }
+    return {};
 }
 
 }  // namespace
@@ -157,10 +225,6 @@ void PolyhedronTaker::split(CellFaces& faces) {
     }
     ++polyhedra_;
     found_.cut = true;
-    Vec3 middle(0.0);
-    for (const Index p : points_) middle += found_.points[p] / static_cast<double>(points_.size());
-    const auto apex = static_cast<Index>(found_.points.size());
-    found_.points.push_back(middle);
     std::map<std::array<Index, 3>, std::array<Index, 3>> triangles;
     for (auto& face : faces) {
         start_fan(face, found_.points);
@@ -173,12 +237,26 @@ void PolyhedronTaker::split(CellFaces& faces) {
             if (!is_new) triangles.erase(same);
         }
     }
+    std::vector<Vec3> corners;
+    for (const Index p : points_) corners.push_back(found_.points[p]);
+    Inside inside;
+    for (const auto& [key, t] : triangles) inside.add(found_.points[t[0]], found_.points[t[1]], found_.points[t[2]]);
+    auto weights = weights_of_middle(corners, inside);
+    if (!weights) {
+        ++folded_;
+        weights.emplace(corners.size(), 1 / static_cast<double>(corners.size()));
+    }
+    Vec3 middle(0.0);
+    for (std::size_t k = 0; k < corners.size(); ++k) middle += (*weights)[k] * corners[k];
+    const auto apex = static_cast<Index>(found_.points.size());
+    found_.points.push_back(middle);
     for (const auto& [key, t] : triangles) {
         const std::array<Index, 4> tet{t[0], t[1], t[2], apex};
         put(found_.tets, &tet);
         ++tets_;
     }
-    // Fields at points have the mean of the cell's points there; a number that no other point has, where they are numbers.
+    // Fields at points have the mean of the cell's points there, with the weights of the middle; a number that no other point
+    // has, where they are numbers.
     constexpr double kAboveNumbers = 4503599627370496.0;
     for (FileArray& array : found_.arrays) {
         if (array.at_cells) continue;
@@ -191,7 +269,7 @@ void PolyhedronTaker::split(CellFaces& faces) {
         const auto components = static_cast<std::size_t>(array.components);
         for (std::size_t c = 0; c < components; ++c) {
             double mean = 0;
-            for (const Index p : points_) mean += array.values[p * components + c] / static_cast<double>(points_.size());
+            for (std::size_t k = 0; k < points_.size(); ++k) mean += (*weights)[k] * array.values[points_[k] * components + c];
             array.values.push_back(mean);
         }
     }
@@ -201,6 +279,10 @@ void PolyhedronTaker::report() {
     if (polyhedra_ == 0) return;
     found_.warnings.push_back(counted(polyhedra_, "polyhedron", "polyhedra") + " split from the middle into " +
                               counted(tets_, "tetrahedron", "tetrahedra"));
+    if (folded_ == 0) return;
+    found_.warnings.push_back(
+        counted(folded_, "polyhedron has", "polyhedra have") +
+        " no point from which all faces are seen from inside, or none that is found: tetrahedra overlap there");
 }
 
 // A face whose corners are at fewer points, such as those of a collapsed prism, is the polygon of these points, or none.

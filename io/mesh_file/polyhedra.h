@@ -40,7 +40,7 @@ private:
     bool ignore_others_;
     std::vector<Index> points_;  // of the cell at hand
     Index number_ = 0;
-    std::size_t polyhedra_ = 0, tets_ = 0, left_out_ = 0;
+    std::size_t polyhedra_ = 0, tets_ = 0, left_out_ = 0, folded_ = 0;
 };
 
 /// Cells by their faces that wait until all points and arrays of a file are there.

@@ -88,12 +88,17 @@ struct Plot3dFlow {
 [[nodiscard]] ReadResult read_xdmf(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> xdmf_times(const std::filesystem::path& path);
 
-/// Reads a step of an unstructured grid in a VTKHDF file, of versions 1 and 2. Its partitions are joined.
+/// Reads a step of a VTKHDF file, of versions 1 and 2: an unstructured grid, whose partitions are joined, or the finest cells
+/// of adaptive mesh refinement.
 [[nodiscard]] ReadResult read_vtkhdf(const std::filesystem::path& path, const ReadOptions& options);
 [[nodiscard]] ReadResult read_vtkhdf(const Hdf5File& file, const ReadOptions& options);
+[[nodiscard]] ReadResult read_vtkhdf_amr(const Hdf5File& file, const ReadOptions& options);
 
 [[nodiscard]] std::vector<double> vtkhdf_times(const std::filesystem::path& path);
 [[nodiscard]] std::vector<double> vtkhdf_times(const Hdf5File& file);
+
+/// Reads the finest cells of adaptive mesh refinement in VTK XML, in the images that the file lists.
+[[nodiscard]] ReadResult read_amr(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads a step of a list of files, and makes one mesh of them.
 [[nodiscard]] ReadResult read_collection(const std::filesystem::path& path, const ReadOptions& options);

@@ -91,7 +91,7 @@ ReadResult read_wavelets(const std::filesystem::path& path, const ReadOptions& o
 }
 
 // Neighbouring rows with the same name share an entry in the lists of formats that messages show.
-constexpr std::array<MeshFormat, 16> kFormats{{
+constexpr std::array<MeshFormat, 17> kFormats{{
     {.extensions = {".mesh"}, .name = "MEDIT", .read = read_file<read_medit>, .write = write_medit, .groups = true},
     {.extensions = {".meshb"}, .name = "MEDIT", .read = read_file<read_meshb>, .groups = true},
     {.extensions = {".vtk"}, .name = "legacy VTK", .read = read_file<read_legacy_vtk>},
@@ -100,6 +100,7 @@ constexpr std::array<MeshFormat, 16> kFormats{{
     {.extensions = {".vtr"}, .name = "VTK XML", .read = read_file<read_vtr>, .piece = read_vtr_piece},
     {.extensions = {".vti"}, .name = "VTK XML", .read = read_file<read_vti>, .piece = read_vti_piece},
     {.extensions = {".pvtu", ".pvts", ".pvtr", ".pvti"}, .name = "VTK XML", .read = read_collection, .files = read_pieces_list},
+    {.extensions = {".vth", ".vthb"}, .name = "VTK XML", .read = read_amr},
     {.extensions = {".vtm"}, .name = "VTK XML", .read = read_collection, .files = read_blocks_list, .blocks = true},
     {.extensions = {".pvd"},
      .name = "ParaView",
@@ -219,7 +220,7 @@ void take_patch_values(ReadResult& result, PatchValuesUse use) {
 }
 
 // The types of VTK XML, and the ending of each.
-constexpr std::array<std::array<std::string_view, 2>, 10> kVtkXmlTypes{{{"\"UnstructuredGrid\"", ".vtu"},
+constexpr std::array<std::array<std::string_view, 2>, 13> kVtkXmlTypes{{{"\"UnstructuredGrid\"", ".vtu"},
                                                                         {"\"StructuredGrid\"", ".vts"},
                                                                         {"\"RectilinearGrid\"", ".vtr"},
                                                                         {"\"ImageData\"", ".vti"},
@@ -228,6 +229,9 @@ constexpr std::array<std::array<std::string_view, 2>, 10> kVtkXmlTypes{{{"\"Unst
                                                                         {"\"PRectilinearGrid\"", ".pvtr"},
                                                                         {"\"PImageData\"", ".pvti"},
                                                                         {"\"vtkMultiBlockDataSet\"", ".vtm"},
+                                                                        {"\"vtkOverlappingAMR\"", ".vth"},
+                                                                        {"\"vtkNonOverlappingAMR\"", ".vth"},
+                                                                        {"\"vtkHierarchicalBoxDataSet\"", ".vth"},
                                                                         {"\"Collection\"", ".pvd"}}};
 
 // begin: of a file of text

@@ -29,6 +29,7 @@
 #include "subvol/detail/vtk_xml.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
+#include "xml_list.h"
 
 namespace subvol::detail {
 
@@ -52,35 +53,6 @@ public:
 
 private:
     std::map<double, std::vector<ListedFile>> steps_;
-};
-
-class XmlList {
-public:
-    XmlList(const std::filesystem::path& path, const std::string& type, const std::string& needed)
-        : path_(path), file_(path.string()), text_(read_text(path)), xml_(text_, file_, type, needed) {}
-
-    [[nodiscard]] const VtkXml& xml() const { return xml_; }
-    [[nodiscard]] ListedFile file(const pugi::xml_node& node, const char* attribute, std::string block) {
-        std::string place = place_of(node);
-        auto path = named_file(path_.parent_path(), as_utf8(node.attribute(attribute).as_string()), [&] { return place; });
-        return {std::move(path), std::move(block), std::move(place)};
-    }
-
-private:
-    // Elements come in the order of the text: each line is counted once.
-    [[nodiscard]] std::string place_of(const pugi::xml_node& node) {
-        const std::size_t place = std::min(xml_.place(node), text_.size());
-        if (place < counted_) counted_ = lines_ = 0;
-        const auto at = [&](std::size_t offset) { return text_.begin() + static_cast<std::ptrdiff_t>(offset); };
-        lines_ += static_cast<std::size_t>(std::count(at(counted_), at(place), '\n'));
-        counted_ = place;
-        return file_ + ", line " + std::to_string(1 + lines_);
-    }
-
-    std::filesystem::path path_;
-    std::string file_, text_;
-    VtkXml xml_;
-    std::size_t counted_ = 0, lines_ = 0;  // bytes of the text, and the lines that end in them
 };
 
 // The blocks of a composite data set, and those of its blocks. name: of the element, with a slash; empty for the first

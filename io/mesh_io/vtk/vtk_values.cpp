@@ -49,7 +49,9 @@ void VtkValues::set_binary() {
 
 VtkType VtkValues::read_type(const std::string& what) {
     const std::string_view word = in_.word();
-    const auto type = kTypes.find(upper_case(word));
+    auto type = kTypes.find(upper_case(word));
+    // FreeFem's number of components touches its type: "int1".
+    if (type == kTypes.end() && word.ends_with('1')) type = kTypes.find(upper_case(word.substr(0, word.size() - 1)));
     if (type == kTypes.end()) in_.fail_word({what}, "a data type", word);
     return type->second;
 }
@@ -125,8 +127,10 @@ namespace {
 const std::map<std::string_view, std::size_t> kComponents{
     {"VECTORS", 3}, {"NORMALS", 3}, {"TENSORS", 9}, {"TENSORS6", 6}, {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"EDGE_FLAGS", 1}};
 
-// Colours are bytes in a BINARY file and numbers from 0 to 1 in an ASCII one.
-constexpr VtkType kByte{NumberType::UInt8};
+// Colours are bytes in BINARY files, and numbers from 0 to 1 in texts.
+VtkType type_of_colors(const VtkValues& values) {
+    return values.binary() ? VtkType{NumberType::UInt8} : VtkType{NumberType::Float32};
+}
 
 int hex_digit(char c) {
     int digit = -1;
@@ -214,7 +218,7 @@ void VtkArrayReader::read_scalars() {
 
 void VtkArrayReader::read_colors() {
     const std::string name(in_.word());
-    read_values(name, kByte, checked_components(in_, in_.count({"COLOR_SCALARS"})));
+    read_values(name, type_of_colors(values_), checked_components(in_, in_.count({"COLOR_SCALARS"})));
     if (!values_.binary() || leaves_out()) return;
     for (double& value : found_.arrays.back().values) value /= 255;
 }
@@ -228,7 +232,7 @@ void VtkArrayReader::read_texture_coordinates() {
 void VtkArrayReader::read_lookup_table() {
     const std::string name(in_.word());
     const std::size_t size = in_.count({"LOOKUP_TABLE"});
-    skip_values(name, kByte, 4 * size);
+    skip_values(name, type_of_colors(values_), 4 * size);
     found_.ignored.push_back({"lookup table", decoded(name)});
 }
 

@@ -30,7 +30,10 @@ namespace {
 const std::string kRoot = "/VTKHDF";
 const std::string kSteps = kRoot + "/Steps";
 
-void check_root(const Hdf5File& file) {
+constexpr std::string_view kAmrType = "OverlappingAMR";
+
+// Returns the type.
+std::string check_root(const Hdf5File& file) {
     const auto version = file.numbers(kRoot, "Version");
     if (version.empty()) file.fail("not a VTKHDF file: there is no group VTKHDF with a version");
     if (version[0] != 1 && version[0] != 2) {
@@ -38,9 +41,10 @@ void check_root(const Hdf5File& file) {
     }
     // Files of the first writers have no type: they are unstructured grids.
     const std::string type = file.text(kRoot, "Type").value_or(file.has(kRoot + "/Types") ? "UnstructuredGrid" : "");
-    if (type != "UnstructuredGrid") {
-        file.fail(in_quotes(type) + " is not an UnstructuredGrid", "a volume mesh of that type is needed");
+    if (type != "UnstructuredGrid" && type != kAmrType) {
+        file.fail(in_quotes(type) + " is not an UnstructuredGrid or OverlappingAMR", "a volume mesh of these types is needed");
     }
+    return type;
 }
 
 // Where the values of a partition begin, and how many there are.
@@ -80,7 +84,7 @@ private:
     // A number of the step, in a dataset of the group Steps; the other number if there is none.
     [[nodiscard]] std::size_t of_step(const std::string& name, std::size_t otherwise) const {
         const std::string path = kSteps + "/" + name;
-        if (!file_.has(path)) return otherwise;
+        if (!file_.has(path) || file_.rows(path) == 0) return otherwise;  // before the first step is written
         const auto values = file_.integers(path, step_, 1);
         if (values.empty()) return otherwise;
         return checked(values[0], path);
@@ -280,12 +284,11 @@ private:
 }  // namespace
 
 ReadResult read_vtkhdf(const Hdf5File& file, const ReadOptions& options) {
-    check_root(file);
-    return VtkHdfReader(file, options).read();
+    return check_root(file) == kAmrType ? read_vtkhdf_amr(file, options) : VtkHdfReader(file, options).read();
 }
 
 std::vector<double> vtkhdf_times(const Hdf5File& file) {
-    check_root(file);
+    static_cast<void>(check_root(file));
     const std::string path = kSteps + "/Values";
     return file.has(path) ? file.reals(path) : std::vector<double>();
 }

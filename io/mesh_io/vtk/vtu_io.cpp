@@ -369,7 +369,15 @@ private:
             const std::size_t components = number_attribute(array, "NumberOfComponents").value_or(said == "1" ? 1 : 0);
             if (components < 1 || components > kMostVtuComponents)
                 arrays_.fail(array, "it cannot have " + in_quotes(said) + " components");
-            xml_.expect_size(array, arrays_.size(array), tuples * components,
+            // Values at the wrong number of cells put no cell in doubt.
+            const std::size_t size = arrays_.size(array);
+            if (at_cells && size != tuples * components && !is_set_array(name, components)) {
+                found_.unread.push_back({name, xml_.in().place_of(xml_.place(array)) + ": it has " +
+                                                   counted(size, "value", "values") + ", " + std::to_string(components) +
+                                                   " a cell for " + counted(tuples, "cell", "cells") + " are needed"});
+                continue;
+            }
+            xml_.expect_size(array, size, tuples * components,
                              std::to_string(components) + " a " + (at_cells ? "cell" : "point"));
             if (at_cells && is_set_array(name, components)) {
                 std::size_t first = before;

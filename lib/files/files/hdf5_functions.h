@@ -31,9 +31,10 @@ struct Hdf5Functions {
     /// them
     int (*read)(std::int64_t file, const char* dataset, unsigned rank, const std::uint64_t* starts,
                 const std::uint64_t* lengths, void* into);
-    /// Texts and integers of an attribute. They return the number of characters or integers, at most `most`.
+    /// Texts, integers and numbers of an attribute. They return the number of characters or numbers, at most `most`.
     std::int64_t (*text)(std::int64_t file, const char* object, const char* name, char* into, std::size_t most);
     std::int64_t (*integers)(std::int64_t file, const char* object, const char* name, std::int64_t* into, std::size_t most);
+    std::int64_t (*reals)(std::int64_t file, const char* object, const char* name, double* into, std::size_t most);
     /// A new file, and what is put into it. rank: 1 or 2; a dataset's groups are made as they are needed; values are compressed
     std::int64_t (*create)(const char* path);
     int (*group)(std::int64_t file, const char* path);

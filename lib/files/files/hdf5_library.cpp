@@ -120,6 +120,13 @@ public:
         return {numbers.begin(), numbers.begin() + std::max<std::int64_t>(0, count)};
     }
 
+    [[nodiscard]] std::vector<double> reals(const std::string& object, const std::string& attribute) const override {
+        const Lock lock(hdf5_mutex());
+        std::array<double, 16> numbers{};
+        const auto count = library().reals(file_, object.c_str(), attribute.c_str(), numbers.data(), numbers.size());
+        return {numbers.begin(), numbers.begin() + std::max<std::int64_t>(0, count)};
+    }
+
 private:
     std::size_t size_;
     std::int64_t file_ = -1;

@@ -302,13 +302,25 @@ std::int64_t text(std::int64_t file, const char* object, const char* name, char*
     return static_cast<std::int64_t>(std::find(into, into + size, '\0') - into);
 }
 
-std::int64_t integers(std::int64_t file, const char* object, const char* name, std::int64_t* into, std::size_t most) {
+// reals: too
+std::int64_t numbers(std::int64_t file, const char* object, const char* name, hid_t native, bool reals, void* into,
+                     std::size_t most) {
     const Handle attribute(open_attribute(file, object, name), H5Aclose);
     if (attribute < 0) return -1;
     const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
-    if (H5Tget_class(type) != H5T_INTEGER || count < 0 || static_cast<std::size_t>(count) > most) return -1;
-    return H5Aread(attribute, H5T_NATIVE_INT64, into) < 0 ? -1 : count;
+    const H5T_class_t kind = H5Tget_class(type);
+    if (kind != H5T_INTEGER && !(reals && kind == H5T_FLOAT)) return -1;
+    if (count < 0 || static_cast<std::size_t>(count) > most) return -1;
+    return H5Aread(attribute, native, into) < 0 ? -1 : count;
+}
+
+std::int64_t integers(std::int64_t file, const char* object, const char* name, std::int64_t* into, std::size_t most) {
+    return numbers(file, object, name, H5T_NATIVE_INT64, false, into, most);
+}
+
+std::int64_t reals(std::int64_t file, const char* object, const char* name, double* into, std::size_t most) {
+    return numbers(file, object, name, H5T_NATIVE_DOUBLE, true, into, most);
 }
 
 std::int64_t create(const char* path) {
@@ -398,6 +410,7 @@ const subvol::detail::Hdf5Functions* subvol_hdf5() {
                                               .read = &own::read,
                                               .text = &own::text,
                                               .integers = &own::integers,
+                                              .reals = &own::reals,
                                               .create = &own::create,
                                               .group = &own::make_group,
                                               .write = &own::write,

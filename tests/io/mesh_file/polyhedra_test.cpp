@@ -195,6 +195,48 @@ TEST(CellsByFaces, OthersAreSplitIntoTetrahedra) {
     }
 }
 
+// A corner of the polygon points inwards, and the mean of its points lies outside. Its area is that of two triangles, 5 each.
+TEST(CellsByFaces, TheMiddleIsInsideOfCellsThatHideTheMeanOfTheirPoints) {
+    std::mt19937 random(5);
+    for (int k = 0; k < 10; ++k) {
+        std::vector<Vec3> points = points_over({{0, 0}, {10, 0}, {1, 1}, {0, 10}, {0, 5}});
+        std::vector<Index> number(points.size());
+        std::iota(number.begin(), number.end(), Index{0});
+        std::ranges::shuffle(number, random);
+        MeshFile file;
+        file.points.resize(points.size());
+        for (std::size_t p = 0; p < points.size(); ++p) file.points[number[p]] = points[p];
+        FileArray& array = file.arrays.emplace_back(FileArray{"f", 1, false, {}});
+        for (const Vec3& x : file.points) array.values.push_back(3 * x.x - x.y + 2 * x.z);
+        CellFaces faces = shuffled(prism_over(5), random);
+        for (auto& face : faces) {
+            for (Index& p : face) p = number[p];
+        }
+        Polyhedra cells;
+        cells.add(0, std::move(faces));
+        cells.take_into(file, false);
+        const Vec3 middle = file.points.back();
+        EXPECT_LT(std::max(middle.x, middle.y), 1 + 1. / 9) << "the lines of the two edges at the corner meet the axes there";
+        EXPECT_NEAR(file.arrays[0].values.back(), 3 * middle.x - middle.y + 2 * middle.z, kRounding) << "linear fields stay so";
+        EXPECT_THAT(file.warnings, ElementsAre("1 polyhedron split from the middle into 16 tetrahedra"));
+        const ReadResult result = assembled(file);
+        EXPECT_NEAR(volume_of(result.mesh), 10, kRounding);
+        EXPECT_GT(test::least_volume(result.mesh), 0);
+    }
+}
+
+// A prism over a U, of which no place sees everything: its arms are 1 wide and 3 high, its ground is 1 by 1.
+TEST(CellsByFaces, ThatNoPlaceSeesAllOfAreSaid) {
+    MeshFile file;
+    file.points = points_over({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}});
+    Polyhedra cells;
+    cells.add(0, prism_over(8));
+    cells.take_into(file, false);
+    EXPECT_THAT(file.warnings,
+                Contains("1 polyhedron has no point from which all faces are seen from inside, or none that is found: "
+                         "tetrahedra overlap there"));
+}
+
 // Whatever the numbers of the points, both prisms cut the hexagon between them and the quad beside the cube alike.
 TEST(CellsByFaces, NeighboursCutTheirFaceAlike) {
     std::mt19937 random(4);

@@ -86,6 +86,10 @@ public:
         const hid_t space = H5Screate_simple(1, &count, nullptr);
         write(object, name, H5T_NATIVE_INT64, space, values.data());
     }
+    void reals(const std::string& object, const std::string& name, const std::vector<double>& values) {
+        const hsize_t count = values.size();
+        write(object, name, H5T_NATIVE_DOUBLE, H5Screate_simple(1, &count, nullptr), values.data());
+    }
     void attribute(const std::string& object, const std::string& name, const std::string& text) {
         const hid_t type = H5Tcopy(H5T_C_S1);
         H5Tset_size(type, text.size());

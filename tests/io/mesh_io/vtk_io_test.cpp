@@ -50,6 +50,28 @@ TEST_F(VtkIo, ReadsEveryKindOfArray) {
     EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("\"names\" ignored")));
 }
 
+// Bytes from 0 to 255 are those of BINARY files alone.
+TEST_F(VtkIo, ColoursInTextsAreRealNumbers) {
+    const std::string text = vtk_text(make_box(1, 1, 1)) +
+                             "POINT_DATA 8\nSCALARS s float\nLOOKUP_TABLE mine\n0 1 2 3 4 5 6 7\n"
+                             "LOOKUP_TABLE mine 2\n1.0 0.4 0.0 0.5\n0 .25 1 1\n"
+                             "COLOR_SCALARS rgb 1\n0 .125 .25 .375 .5 .625 .75 1\n";
+    const ReadResult result = read("a.vtk", text);
+    EXPECT_EQ(result.mesh.find_attribute("s")->values[7], 7);
+    EXPECT_EQ(result.mesh.find_attribute("rgb")->values, (std::vector<double>{0, .125, .25, .375, .5, .625, .75, 1}));
+}
+
+// FreeFem's writer: keywords in mixed case, and the number of components at the type.
+TEST_F(VtkIo, TheNumberOfComponentsMayTouchTheType) {
+    const std::string text =
+        vtk_text(make_box(2, 1, 1)) + "CELL_DATA 2\nScalars  Label int1\nLOOKUP_TABLE FreeFempp_table\n3\n8\n";
+    const ReadResult result = read("a.vtk", text);
+    ASSERT_NE(result.mesh.find_attribute("Label"), nullptr);
+    EXPECT_EQ(result.mesh.find_attribute("Label")->cells, (std::vector<double>{3, 8}));
+    EXPECT_THAT(read_error("a.vtk", vtk_text(make_box(2, 1, 1)) + "CELL_DATA 2\nSCALARS Label int2\nLOOKUP_TABLE t\n3\n8\n"),
+                HasSubstr("a data type is expected, not \"int2\""));
+}
+
 TEST_F(VtkIo, TakesEveryLineEnd) {
     expect_same_geometry(read("a.vtk", with_crlf(vtk_text(kBox))).mesh, kBox);
 }

@@ -333,6 +333,143 @@ TEST_F(VtkHdf, AChunkDoesNotBecomeMoreThanItsNumbers) {
     EXPECT_THAT(said({zeros.size() / 8}), HasSubstr("has chunks of 104857600 bytes, of which 64 are needed"));
 }
 
+// Programs make the datasets of steps when they open a file, and add to them as they write.
+TEST_F(VtkHdf, StepsOfWhichNoneIsWritten) {
+    {
+        Hdf5Writer file(path("a.vtkhdf"));
+        start(file, {row(2), row(1, 2)});
+        for (const char* name :
+             {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"})
+            file.put("/VTKHDF/Steps/" + std::string(name), Numbers{}, {0}, false);
+    }
+    const ReadResult result = read_mesh(path("a.vtkhdf"));
+    EXPECT_NEAR(inspect(result.mesh).volume, 3, 1e-12);
+}
+
+// Two levels of adaptive refinement: 2 x 2 x 2 cells, of which a step divides some. The values are the levels' numbers, with
+// the step's. ends: of the names of the datasets for steps, which version 2.2 has without an s
+void write_amr(Hdf5Writer& file, const std::vector<std::vector<std::array<int, 6>>>& fine,
+               const std::array<std::string, 2>& ends, bool steps) {
+    file.group("/VTKHDF");
+    file.attribute("/VTKHDF", "Version", Numbers{2, 2});
+    file.attribute("/VTKHDF", "Type", "OverlappingAMR");
+    file.attribute("/VTKHDF", "GridDescription", "XYZ");
+    file.reals("/VTKHDF", "Origin", {-1, 0, .5});
+    const auto level = [](int l) { return "/VTKHDF/Level" + std::to_string(l); };
+    for (const int l : {0, 1}) {
+        file.group(level(l));
+        file.reals(level(l), "Spacing", std::vector<double>(3, l == 0 ? 1 : .5));
+    }
+    Numbers boxes, offsets, counts, values, value_offsets, points, point_offsets, coarse, coarse_offsets;
+    for (std::size_t s = 0; s < fine.size(); ++s) {
+        const auto step = static_cast<std::int64_t>(s);
+        offsets.push_back(static_cast<std::int64_t>(boxes.size() / 6));
+        counts.push_back(static_cast<std::int64_t>(fine[s].size()));
+        value_offsets.push_back(static_cast<std::int64_t>(values.size()));
+        point_offsets.push_back(static_cast<std::int64_t>(points.size()));
+        coarse_offsets.push_back(static_cast<std::int64_t>(coarse.size()));
+        coarse.insert(coarse.end(), 8, 10 * step);
+        for (const auto& box : fine[s]) {
+            boxes.insert(boxes.end(), box.begin(), box.end());
+            const auto along = [&](std::size_t a) { return static_cast<std::size_t>(box[2 * a + 1] - box[2 * a] + 1); };
+            values.insert(values.end(), along(0) * along(1) * along(2), 10 * step + 1);
+            points.insert(points.end(), (along(0) + 1) * (along(1) + 1) * (along(2) + 1), 10 * step + 1);
+        }
+    }
+    file.put("/VTKHDF/Level0/AMRBox", Numbers{0, 1, 0, 1, 0, 1}, {1, 6});
+    file.put("/VTKHDF/Level1/AMRBox", boxes, {boxes.size() / 6, 6});
+    file.put("/VTKHDF/Level0/CellData/c", coarse);
+    file.put("/VTKHDF/Level1/CellData/c", values);
+    file.put("/VTKHDF/Level0/PointData/p", Numbers(27, 0));
+    file.put("/VTKHDF/Level1/PointData/p", points);
+    if (!steps) return;
+    std::vector<double> times;
+    for (std::size_t s = 0; s < fine.size(); ++s) times.push_back(.5 * static_cast<double>(s));
+    file.put("/VTKHDF/Steps/Values", times);
+    const std::string zero = "/VTKHDF/Steps/Level0/", one = "/VTKHDF/Steps/Level1/";
+    file.put(zero + "AMRBoxOffset" + ends[0], Numbers(fine.size(), 0));
+    file.put(zero + "NumberOfAMRBox" + ends[1], Numbers(fine.size(), 1));
+    file.put(zero + "CellDataOffset" + ends[0] + "/c", coarse_offsets);
+    file.put(zero + "PointDataOffset" + ends[0] + "/p", Numbers(fine.size(), 0));
+    file.put(one + "AMRBoxOffset" + ends[0], offsets);
+    file.put(one + "NumberOfAMRBox" + ends[1], counts);
+    file.put(one + "PointDataOffset" + ends[0] + "/p", point_offsets);
+    // Those of the cells are where the boxes of the steps before end.
+}
+
+TEST_F(VtkHdf, TheFinestCellsOfAdaptiveRefinement) {
+    {
+        Hdf5Writer file(path("a.vtkhdf"));
+        write_amr(file, {{{0, 1, 0, 1, 0, 3}}}, {}, false);
+    }
+    const ReadResult result = read_mesh(path("a.vtkhdf"), {.cell_values = CellValues::Constant});
+    EXPECT_EQ(result.mesh.cells.size(), 8u - 2 + 16);
+    EXPECT_EQ(result.mesh.points.size(), 27u + 45 - 12);  // the corners of the two divided cells are points of both levels
+    EXPECT_NEAR(inspect(result.mesh).volume, 8, 1e-12);
+    EXPECT_EQ(result.mesh.find_attribute("c")->cells.front(), 0);
+    EXPECT_EQ(result.mesh.find_attribute("c")->cells.back(), 1);
+    for (std::size_t p = 0; p < result.mesh.points.size(); ++p) {
+        const Vec3 x = result.mesh.points[p];
+        EXPECT_EQ(result.mesh.find_attribute("p")->values[p], x.x <= 0 && x.y <= 1 ? 1 : 0);
+    }
+    EXPECT_THAT(result.warnings, Contains("2 levels of refinement put together; 2 cells that finer ones cover left out"));
+}
+
+TEST_F(VtkHdf, StepsOfAdaptiveRefinement) {
+    for (const auto& ends : {std::array<std::string, 2>{"", ""}, std::array<std::string, 2>{"s", "es"}}) {
+        {
+            Hdf5Writer file(path("a.vtkhdf"));
+            write_amr(file, {{{0, 1, 0, 1, 0, 3}, {2, 3, 2, 3, 0, 1}}, {}, {{0, 3, 0, 3, 0, 3}}}, ends, true);
+        }
+        EXPECT_EQ(open_series(path("a.vtkhdf")).size(), 3u);
+        const std::array<std::size_t, 3> cells{8 - 3 + 24, 8, 64};
+        for (std::size_t s = 0; s < 3; ++s) {
+            const ReadResult result = read_mesh(path("a.vtkhdf"), {.step = s, .cell_values = CellValues::Constant});
+            EXPECT_EQ(result.mesh.cells.size(), cells[s]);
+            EXPECT_NEAR(inspect(result.mesh).volume, 8, 1e-12);
+            const auto& values = result.mesh.find_attribute("c")->cells;
+            for (std::size_t c = 0; c < values.size(); ++c) {
+                const bool coarse = std::abs(result.mesh.points[result.mesh.cells[c][1]].x -
+                                             result.mesh.points[result.mesh.cells[c][0]].x) > .7;
+                EXPECT_EQ(values[c], 10 * static_cast<double>(s) + (coarse ? 0 : 1));
+            }
+        }
+    }
+}
+
+TEST_F(VtkHdf, AdaptiveRefinementThatIsWrong) {
+    const auto said = [&](const std::vector<std::array<int, 6>>& boxes, const std::function<void(Hdf5Writer&)>& more = {}) {
+        return error([&](Hdf5Writer& file) {
+            write_amr(file, {boxes}, {}, false);
+            if (more) more(file);
+        });
+    };
+    EXPECT_THAT(said({{0, 1, 0, 1, 0, 4}}),
+                HasSubstr("block 0 of level 1: its box 0 1 0 1 0 4 divides cells of level 0 along z in part"));
+    EXPECT_THAT(said({{0, 1, 0, 1, 2, 5}}), HasSubstr("block 0 of level 1 lies outside of the blocks of level 0"));
+    EXPECT_THAT(said({{0, 1, 0, 1, 0, 1}, {0, 3, 0, 1, 0, 1}}), HasSubstr("block 1 of level 1 overlaps block 0 of level 1"));
+    EXPECT_THAT(said({{0, 1, 0, 1, 0, 1}},
+                     [](Hdf5Writer& file) {
+                         file.put("/VTKHDF/Level1/CellData/short", Numbers{1, 2});
+                     }),
+                HasSubstr("\"/VTKHDF/Level1/CellData/short\" has 2 rows; 8 from row 0 on are needed"));
+    EXPECT_THAT(said({{0, 1, 0, 1, 0, 1}},
+                     [](Hdf5Writer& file) {
+                         file.put("/VTKHDF/Level2/AMRBox", Numbers{0, 1, 0, 1, 0, 1}, {1, 6});
+                     }),
+                HasSubstr("the attribute \"Spacing\" of \"/VTKHDF/Level2\" is not three numbers"));
+    EXPECT_THAT(error([](Hdf5Writer& file) {
+                    file.group("/VTKHDF");
+                    file.attribute("/VTKHDF", "Version", Numbers{2, 2});
+                    file.attribute("/VTKHDF", "Type", "OverlappingAMR");
+                    file.reals("/VTKHDF", "Origin", {0, 0, 0});
+                    file.group("/VTKHDF/Level0");
+                    file.reals("/VTKHDF/Level0", "Spacing", {1, 1, 1});
+                    file.put("/VTKHDF/Level0/AMRBox", Numbers{0, 999, 0, 999, 0, 999}, {1, 6});
+                }),
+                HasSubstr("its boxes have 1003003001 points, and 0 values"));
+}
+
 TEST_F(VtkHdf, RealFile) {
     const auto file = beside_data("series/can.vtkhdf");
     if (!file) GTEST_SKIP() << "no series/can.vtkhdf beside the folder that SUBVOL_DATA names";

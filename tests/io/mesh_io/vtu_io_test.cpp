@@ -274,6 +274,26 @@ TEST_F(VtuIo, DamagedDataAreRefused) {
     EXPECT_THAT(read_error(huge), HasSubstr("its 1152921504606846976 bytes go beyond the end of the data"));
 }
 
+// As ParaView's Catalyst has written them: with the values of ghost cells that the grid does not have.
+TEST_F(VtuIo, AFieldAtAnotherNumberOfCellsIsLeftOut) {
+    VtuText vtu;
+    const HexMesh mesh = make_box(2, 1, 1);
+    const std::string cells = "<CellData>" + vtu.array("Float64", "Name=\"long\"", std::vector<double>{1, 2, 3}) +
+                              vtu.array("Float64", "Name=\"right\"", std::vector<double>{5, 7}) + "</CellData>";
+    const ReadResult result = read(vtu.file(vtu.piece(mesh, cells)));
+    EXPECT_EQ(result.mesh.cells, mesh.cells);
+    EXPECT_EQ(result.mesh.find_attribute("long"), nullptr);
+    ASSERT_NE(result.mesh.find_attribute("right"), nullptr);
+    EXPECT_EQ(result.mesh.find_attribute("right")->cells, (std::vector<double>{5, 7}));
+    ASSERT_EQ(result.unread.size(), 1u);
+    EXPECT_EQ(result.unread[0].name, "long");
+    EXPECT_THAT(result.unread[0].why, HasSubstr("it has 3 values, 1 a cell for 2 cells are needed"));
+    // Values at points are not sure to be where the points are.
+    const std::string points =
+        "<PointData>" + vtu.array("Float64", "Name=\"p\"", std::vector<double>{1, 2, 3}) + "</PointData>";
+    EXPECT_THAT(read_error(vtu.file(vtu.piece(mesh, points))), HasSubstr("it has 3 values (12 are needed: 1 a point)"));
+}
+
 }  // namespace vtu_io_test
 
 }  // namespace subvol::test

@@ -22,8 +22,9 @@ namespace subvol {
 ///   .xyz, .p3d             Plot3D, with the flow of the same name in .q
 ///   .e, .exo, .ex2, .g     Exodus II
 ///   .pvtu, .pvts, .pvtr, .pvti, .vtm  the pieces or blocks of VTK, in files of their own
+///   .vth, .vthb            the finest cells of adaptive mesh refinement of VTK, in images of their own
 ///   .pvd, .series          steps of VTK and ParaView, in files of their own
-///   .vtkhdf, .hdf          VTKHDF, unstructured grids
+///   .vtkhdf, .hdf          VTKHDF, unstructured grids and adaptive mesh refinement
 ///   .xdmf, .xmf            XDMF 2 and 3, with values in the text, in HDF5 and in binary files
 ///   .cgns                  CGNS in HDF5
 ///   .case                  EnSight Gold

@@ -46,6 +46,8 @@ public:
                                                             std::span<const std::size_t> counts) const = 0;
     [[nodiscard]] virtual std::optional<std::string> text(const std::string& object, const std::string& attribute) const = 0;
     [[nodiscard]] virtual std::vector<std::int64_t> integers(const std::string& object, const std::string& attribute) const = 0;
+    /// The numbers of an attribute, of any type; none if it has others, or too many.
+    [[nodiscard]] virtual std::vector<double> reals(const std::string& object, const std::string& attribute) const = 0;
 };
 
 /// throws: Error(Io) if the file cannot be opened, Error(InvalidInput) if it is not an HDF5 file, Error(MissingCapability) if
@@ -129,6 +131,9 @@ public:
     }
     [[nodiscard]] std::vector<std::int64_t> numbers(const std::string& object, const std::string& attribute) const {
         return source_->integers(object, attribute);
+    }
+    [[nodiscard]] std::vector<double> real_numbers(const std::string& object, const std::string& attribute) const {
+        return source_->reals(object, attribute);
     }
 
     [[nodiscard]] const std::string& name() const { return file_; }
