@@ -10,6 +10,7 @@
 
 #include "kernel_levels.h"
 #include "picture_facts.h"
+#include "sheet_error.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/detail/limit_words.h"
 #include "subvol/detail/mesh_bodies.h"
@@ -471,16 +472,25 @@ struct PictureMaker::State {
         return prepared->kernels->splatters.emplace_back(KeptSplatter{key, Splatter(kernels, splat), version});
     }
 
+    /// Gives a splatter the colours that solids have on their boundary.
+    void paint(Splatter& splatter) {
+        const BoundaryValues none;
+        const BoundaryValues& colors = paints_splats() ? skin_of_kernels() : none;
+        if (colors.values.empty())
+            splatter.set_boundary_colors(none.surface, {});
+        else
+            splatter.set_boundary_colors(colors.surface, colors.values.back());
+    }
+
     Picture draw_splats(const View& view, const Optics& of_field, Progress* progress, const RbfVolume* stand_in) {
         Picture picture;
         const Optics optics = optics_of_kernels(of_field);
         const RbfVolume& shown =
             stand_in != nullptr ? *stand_in : prepared->kernels->levels->kernels(view, progress, picture.facts);
-        const BoundaryValues none;
-        const BoundaryValues& colors = paints_splats() ? skin_of_kernels() : none;
         SplatResult drawn;
         if (team != nullptr) {
-            drawn = team->splat(shown, splat_options(optics), colors, view, optics, progress, picture.facts);
+            drawn = team->splat(shown, splat_options(optics), paints_splats() ? skin_of_kernels() : BoundaryValues{}, view,
+                                optics, progress, picture.facts);
         } else {
             const bool in_memory = stand_in == nullptr && draws_all_kernels();
             KeptSplatter& kept = splatter(in_memory ? *prepared->kernels->levels->all() : shown,
@@ -490,10 +500,7 @@ struct PictureMaker::State {
                 kept.version = prepared->kernels->levels->version();
             }
             kept.splatter.set_clip(options.style.clip);
-            if (colors.values.empty())
-                kept.splatter.set_boundary_colors(none.surface, {});
-            else
-                kept.splatter.set_boundary_colors(colors.surface, colors.values.back());
+            paint(kept.splatter);
             drawn = kept.splatter.draw(view, optics, progress);
         }
         detail::add_facts(drawn.report, method(), picture.facts);
@@ -501,6 +508,23 @@ struct PictureMaker::State {
         picture.image = std::move(drawn.image);
         picture.depth = std::move(drawn.depth);
         return picture;
+    }
+
+    /// Whether a picture is of sheets whose number its tolerance decides, and can be drawn again with more of them.
+    [[nodiscard]] bool has_chosen_sheets() const {
+        return (method() == Method::Splat || method() == Method::Sheets) && !is_translucent() && !is_in_pieces() &&
+               team == nullptr && !options.seconds && options.splat.sheets == 0;
+    }
+
+    /// sheets: those of the picture
+    detail::SheetError sheet_error(const Image& image, int sheets, const View& view, const Optics& of_field,
+                                   Progress* progress) {
+        const Optics optics = optics_of_kernels(of_field);
+        Facts unsaid;
+        const RbfVolume& shown = prepared->kernels->levels->kernels(view, progress, unsaid);
+        Splatter finer(shown, detail::with_more_sheets(splat_options(optics), sheets));
+        paint(finer);
+        return detail::difference(image, finer.draw(view, optics, progress).image);
     }
 
     Picture draw_splats_in_time(const View& view, const Optics& optics, Progress* progress) {
@@ -726,6 +750,19 @@ Picture PictureMaker::draw(const View& view, const Optics& optics, Progress* pro
     facts.merge(picture.facts);
     picture.facts = std::move(facts);
     return picture;
+}
+
+Facts PictureMaker::measure_error(const Picture& picture, const View& view, const Optics& optics, Progress* progress) {
+    Facts facts;
+    const FactValue* said = picture.facts.find("sheets");
+    const auto* sheets = said == nullptr ? nullptr : std::get_if<std::int64_t>(&said->value);
+    if (sheets == nullptr || *sheets < 2 || !state_->has_chosen_sheets()) return facts;
+    const detail::SheetError error = facts.timed(progress, "error", [&] {
+        return state_->sheet_error(picture.image, static_cast<int>(*sheets), view, optics, progress);
+    });
+    facts["image_error"] = error.rms;
+    facts["image_error_max"] = error.largest;
+    return facts;
 }
 
 std::vector<Vec3> PictureMaker::framed_points(const Optics& optics, Progress* progress, Facts& facts) {
