@@ -21,6 +21,7 @@
 #include "subvol/field_range.h"
 #include "subvol/limit.h"
 #include "subvol/progressive.h"
+#include "subvol/rbf_field.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
 #include "subvol/render_tets.h"
@@ -32,7 +33,7 @@
 //   style.look ──▶ light ──┬──▶ splat, sheets, footprints: in the splatter, or ──▶ the boundary's own colours (painted)
 //                          └──▶ tets, pt, dense: of the boundary, over the finished picture (solids only)
 //   levels ──▶ kernels: instead of the limit · tets, pt: 1 by default · dense: none are raised until nothing changes
-//   an opaque solid that nothing cuts, by splats: skin ──▶ first hits of the rays, without kernels
+//   an opaque solid, by splats: skin ──▶ first hits of the rays; at cuts kernels ──▶ values there
 //   body   ──▶ kernels ──▶ levels of detail ──▶ splatters     refined mesh ──▶ tetrahedra     skin: values on the boundary
 
 namespace subvol {
@@ -91,6 +92,7 @@ struct PreparedKernels {
     std::optional<HexMesh> relative_mesh{};
     std::optional<BoundaryValues> relative_skin{};
     std::optional<RbfVolume> volume{};
+    std::optional<RbfField> at_cuts{};  // the values of colours
     std::optional<detail::KernelLevels> levels{};
     std::vector<KeptSplatter> splatters{};
 };
@@ -246,13 +248,15 @@ struct PictureMaker::State {
         return paints_boundary() && !options.splat.shadows && options.splat.ambient_occlusion == 0;
     }
 
+    [[nodiscard]] bool is_cut() const { return !options.style.clip.empty(); }
+
     /// Whether pictures of an opaque solid are made of the first hits of its rays alone, where no ray begins inside. Options of
-    /// kernels and sheets ask for those.
+    /// kernels and sheets ask for those. At a cut kernels give the values.
     [[nodiscard]] bool may_show_first_hits() const {
         const SplatMethod splats = options.splat.method;
         return paints_splats() && method() == Method::Splat && (splats == SplatMethod::Auto || splats == SplatMethod::Cpu) &&
-               options.style.clip.empty() && !options.seconds && !options.lod && !options.image_tolerance &&
-               !options.splat.device && (!prepared->skin || !prepared->skin->values.empty());
+               options.style.clip.slices.empty() && (!is_cut() || !is_in_pieces()) && !options.seconds && !options.lod &&
+               !options.image_tolerance && !options.splat.device && (!prepared->skin || !prepared->skin->values.empty());
     }
     /// Whether the eye, or the plane of parallel rays, lies before the whole boundary.
     [[nodiscard]] bool shows_first_hits(const View& view) {
@@ -349,11 +353,19 @@ struct PictureMaker::State {
         }
         if (may_show_first_hits()) {
             (void)skin_of_mesh(progress, facts);
+            if (is_cut()) prepare_cuts(optics, progress, facts);
             prepared->hull.reset();
         }
         if (!may_show_first_hits()) prepare_inside(optics, progress, facts);
         warn_of_range(facts);
         return facts;
+    }
+
+    /// The values inside a solid that is cut open.
+    void prepare_cuts(const Optics& optics, Progress* progress, Facts& facts) {
+        if (prepared->kernels->at_cuts) return;
+        const RbfVolume& volume = kernels(optics, progress, facts);
+        prepared->kernels->at_cuts.emplace(volume, RbfFieldOptions{.channel = shown_channels().back()});
     }
 
     /// What pictures need that show more than the first hits of a solid.
@@ -664,9 +676,14 @@ struct PictureMaker::State {
             rows = {rows.first - kRowsOfTile, rows.end + kRowsOfTile};
         }
         Picture picture;
+        BoundaryCut cut{.clip = options.style.clip};
+        cut.value_at = [this](const Vec3& place) -> std::optional<double> {
+            const std::optional<double> value = prepared->kernels->at_cuts->value(place);
+            return value && is_relative() ? *value + prepared->kernels->origins[1] : value;
+        };
         BoundaryPicture drawn = picture.facts.timed(progress, "draw", [&] {
             return draw_boundary(prepared->skin->surface, prepared->skin->values.back(), view, optics,
-                                 shading_for(optics.function()), options.style.sample_count(), rows, progress);
+                                 shading_for(optics.function()), options.style.sample_count(), rows, progress, cut);
         });
         std::array inside{drawn.rays_inside};
         if (team != nullptr) team->add_up(inside);
