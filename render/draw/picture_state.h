@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel_levels.h"
+#include "kernel_origins.h"
 #include "sheet_error.h"
 #include "subvol/boundary_values.h"
 #include "subvol/picture_maker.h"

@@ -101,7 +101,7 @@ TEST(DrawBoundary, ACutShowsTheValuesAtItsPlacesInTheLightOfItsPlane) {
         const BoundaryPicture drawn =
             draw_boundary(boundary.surface, boundary.values[0], view, optics, shading, 2, {}, nullptr, cut);
         EXPECT_EQ(drawn.rays_inside, 0U);
-        const auto& [right, up, forward] = view.axes();
+        const auto& axes = view.axes();
         std::size_t on_cut = 0;
         for (int y = 0; y < 36; ++y) {
             for (int x = 0; x < 40; ++x) {
@@ -115,11 +115,11 @@ TEST(DrawBoundary, ACutShowsTheValuesAtItsPlacesInTheLightOfItsPlane) {
                     if (at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1 || at.z < 0 || at.z > 1) continue;
                     const Vec3 to_eye = -glm::normalize(ray.direction);
                     const auto in_eye = [&](const Vec3& v) {
-                        return Vec3(glm::dot(v, right), glm::dot(v, up), glm::dot(v, forward));
+                        return Vec3(glm::dot(v, axes[0]), glm::dot(v, axes[1]), glm::dot(v, axes[2]));
                     };
                     const detail::SurfaceLight light = detail::surface_light(shading, in_eye(normal), in_eye(to_eye));
                     color += static_cast<double>(light.diffuse) * optics.color(.2 + .5 * at.x * at.y);
-                    depth += glm::dot(at - view.eye(), forward);
+                    depth += glm::dot(at - view.eye(), axes[2]);
                     ++met;
                 }
                 if (met < 4) continue;
