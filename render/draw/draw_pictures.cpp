@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// How PictureMaker draws: each family of methods from what was prepared for it (prepare_pictures.cpp), then what the boundary
+// gives to a finished picture. Solids are drawn by first hits where nothing else is asked for; pictures of kernels keep
+// their splatters, one for each way of drawing.
 #include <array>
 #include <limits>
 #include <utility>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// What PictureMaker makes before it draws, and keeps for pictures that follow: values on the boundary, kernels and their
+// levels, tetrahedra, what meshes in pieces need; and which of these a style asks for. Values of kernels are relative to the
+// middle of a range that is narrow for 32-bit floats.
 #include <algorithm>
 #include <array>
 #include <limits>
