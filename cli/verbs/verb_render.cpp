@@ -259,6 +259,7 @@ public:
                    common().patches.empty() && common().part_opacities.empty(), OptionNames::Flags);
         refuse_frames_per_second();
         check_parts();
+        says_error_ = common().json && arguments_.chosen.image_tolerance;
         const Method method = arguments_.method;
         report.if_long(method == Method::Dense ? "--levels 2, a smaller --size, or --method splat"
                        : draws_kernels(method) ? "a smaller --size, a larger --spacing, or fewer --sheets"
@@ -390,14 +391,18 @@ private:
         return {std::move(body), arguments_.method_options(box_, range_, report.progress()), rows_ ? &*rows_ : nullptr};
     }
 
-    static void write(PictureMaker& maker, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
-                      Report& report) {
+    void write(PictureMaker& maker, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+               Report& report) {
         if (output.draws_within()) {
             Facts facts;
             output.set_boundary(maker.boundary(optics, report.progress(), facts));
             report.merge(facts);
         }
-        const auto draw = [&](const View& view, Progress* progress) { return maker.draw(view, optics, progress); };
+        const auto draw = [&](const View& view, Progress* progress) {
+            Picture picture = maker.draw(view, optics, progress);
+            if (std::exchange(says_error_, false)) picture.facts.merge(maker.measure_error(picture, view, optics, progress));
+            return picture;
+        };
         report.merge(output.write(views, draw, report.progress()));
     }
 
@@ -652,6 +657,7 @@ private:
     Box box_{};                            // of what is shown, with its range
     std::optional<Warp> moved_;            // by --warp
     bool said_limit_ = false;
+    bool says_error_ = false;  // of the next picture
     Range range_{};
 };
 

@@ -10,7 +10,7 @@
 //
 // Finished pictures are changed by the first hits of n × n rays in each pixel: lit by the mean of their light, or given the
 // colours of values on the boundary. There, rays that enter through a cut or begin inside keep their share of the colour that
-// was drawn. The picture of an opaque body that nothing cuts is made of first hits alone.
+// was drawn. The picture of an opaque body is made of first hits alone, where values are known at its cuts, too.
 #include "boundary_light.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -166,8 +166,8 @@ struct RayHits {
     }
 };
 
-/// The first hits of a picture's rays on a boundary, which are shaded as they are asked for. They are found in bands of rows,
-/// but for pictures that are cut, whose intervals are all found before.
+/// The first hits of a picture's rays on a boundary or a cut, which are found in bands of rows and shaded as they are asked
+/// for.
 class FirstHits {
 public:
     FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const Clip& clip)
@@ -175,13 +175,10 @@ public:
         Box box;
         for (const Vec3& point : boundary.points) box.add(point);
         cuts_ = RayClip(clip, box.diagonal());
+        is_cut_ = !cuts_.empty() || fine_.ends_rays();
         middle_ = fine_.to_eye(box.center()).z;
         const double near = nearest_depth(fine_, box.diagonal());
-        if (!cuts_.empty() || fine_.ends_rays()) {
-            all_ = clip_intervals(boundary_intervals(boundary, fine_, near, middle_), fine_, cuts_, middle_);
-        } else {
-            raster_.emplace(boundary, fine_, near, middle_, samples * std::max(1, kRowsOfBand / samples));
-        }
+        raster_.emplace(boundary, fine_, near, middle_, samples * std::max(1, kRowsOfBand / samples));
         normals_ = corner_normals(boundary);
         lit_.emplace(LitSurface{boundary, normals_, shading, middle_, cuts_.faces()});
         shader_.emplace(*lit_, fine_);
@@ -189,15 +186,10 @@ public:
     FirstHits(const FirstHits&) = delete;
     FirstHits& operator=(const FirstHits&) = delete;
 
-    /// Calls `visit` with the hits of each row of pixels, and its number. Several rows at once. progress: of pictures that are
-    /// not cut
+    /// Calls `visit` with the hits of each row of pixels, and its number. Several rows at once.
     template <class Visit>
     void each_row(const PixelRows& rows, const Visit& visit, Progress* progress = nullptr) const {
         const int height = fine_.height() / samples_, begin = std::max(rows.first, 0), end = std::min(rows.end, height);
-        if (!raster_) {
-            tbb::parallel_for(begin, std::max(begin, end), [&](int y) { visit(RayHits{all_, fine_, 0}, y); });
-            return;
-        }
         std::atomic<int> rows_done = 0;
         tbb::enumerable_thread_specific<PixelIntervals> bands;
         tbb::parallel_for(0, raster_->band_count(), [&](int band) {
@@ -205,8 +197,10 @@ public:
                       last = std::min(end, raster_->first_row(band + 1) / samples_);
             if (first >= last) return;
             PixelIntervals& intervals = bands.local();
+            const int first_row = raster_->first_row(band);
             raster_->find(band, intervals);
-            const RayHits hits{intervals, fine_, pixel_index(fine_.width(), 0, raster_->first_row(band))};
+            if (is_cut_) intervals = clip_rows(intervals, first_row, fine_, cuts_, middle_);
+            const RayHits hits{intervals, fine_, pixel_index(fine_.width(), 0, first_row)};
             for (int y = first; y < last; ++y) visit(hits, y);
             report_progress(progress, "draw", static_cast<double>(rows_done += last - first) / (end - begin));
         });
@@ -217,6 +211,14 @@ public:
                                      std::array<double, 3>& shares) const {
         if (hits.intervals.triangles[interval] == PixelIntervals::kNoTriangle) return {};
         return shader_->at(hits.intervals, interval, fine_.slopes(column + 0.5, row + 0.5), shares);
+    }
+    /// Where a ray enters an interval.
+    [[nodiscard]] Vec3 place(const RayHits& hits, std::size_t interval, int column, int row) const {
+        const Vec2 slopes = fine_.slopes(column + 0.5, row + 0.5);
+        const double z = depth(hits, interval);
+        const auto& [right, up, forward] = fine_.axes();
+        const Vec2 across = fine_.perspective() ? z * slopes : slopes;
+        return fine_.eye() + across.x * right + across.y * up + z * forward;
     }
     /// The depth at which a ray enters an interval.
     [[nodiscard]] double depth(const RayHits& hits, std::size_t interval) const {
@@ -230,7 +232,7 @@ private:
     View fine_;  // a pixel for each ray
     RayClip cuts_;
     double middle_;
-    PixelIntervals all_{};  // of pictures that are cut
+    bool is_cut_;  // or rays have ends
     std::optional<BoundaryRaster> raster_{};
     std::vector<CornerNormals> normals_{};
     std::optional<LitSurface> lit_{};
@@ -260,11 +262,22 @@ public:
             sum += shares[k];
             value += shares[k] * values_[corners[k]];
         }
-        value = sum > 0 ? value / sum : values_[corners[0]];
-        return static_cast<double>(light.diffuse) * optics_.color(value) + static_cast<double>(light.specular);
+        return lit(light, sum > 0 ? value / sum : values_[corners[0]]);
+    }
+    /// The colour where a ray enters an interval through a cut; none if there is no value.
+    [[nodiscard]] std::optional<Vec3> at_cut(const RayHits& hits, std::size_t interval, int column, int row,
+                                             const BoundaryCut& cut) const {
+        const std::optional<double> value = cut.value_at(hits_.place(hits, interval, column, row));
+        if (!value) return {};
+        std::array<double, 3> shares{};
+        return lit(hits_.light(hits, interval, column, row, shares), *value);
     }
 
 private:
+    [[nodiscard]] Vec3 lit(const SurfaceLight& light, double value) const {
+        return static_cast<double>(light.diffuse) * optics_.color(value) + static_cast<double>(light.specular);
+    }
+
     const FirstHits& hits_;
     const Surface& boundary_;
     std::span<const double> values_;
@@ -332,8 +345,9 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
 }
 
 BoundaryPicture draw_boundary(const Surface& boundary, std::span<const double> values, const View& view, const Optics& optics,
-                              const Shading& shading, int samples, const PixelRows& rows, Progress* progress) {
-    const FirstHits hits(boundary, view, shading, samples, {});
+                              const Shading& shading, int samples, const PixelRows& rows, Progress* progress,
+                              const BoundaryCut& cut) {
+    const FirstHits hits(boundary, view, shading, samples, cut.clip);
     const BoundaryColors colors(hits, boundary, values, optics);
     BoundaryPicture picture{Image(view.width(), view.height()), {}, 0};
     picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
@@ -348,11 +362,17 @@ BoundaryPicture draw_boundary(const Surface& boundary, std::span<const double> v
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
                 const auto first = rays.first(column, row);
                 if (!first) continue;
-                if (rays.intervals.triangles[*first] == PixelIntervals::kNoTriangle) {
+                const std::uint32_t entered = rays.intervals.triangles[*first];
+                std::optional<Vec3> seen;
+                if (entered < PixelIntervals::kFirstFace)
+                    seen = colors.at(rays, *first, column, row);
+                else if (entered != PixelIntervals::kNoTriangle)
+                    seen = colors.at_cut(rays, *first, column, row, cut);
+                if (!seen) {
                     ++rays_inside;
                     continue;
                 }
-                color += colors.at(rays, *first, column, row);
+                color += *seen;
                 depth += hits.depth(rays, *first);
                 ++met;
             }

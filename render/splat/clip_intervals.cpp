@@ -51,6 +51,40 @@ private:
     double middle_;
 };
 
+/// first_row: of those that the intervals are of
+PixelRow clipped_row(const PixelIntervals& intervals, int first_row, int y, const View& view, const RayClip& clip,
+                     double middle) {
+    const IntervalClipper clipper(clip, middle);
+    const auto width = static_cast<std::size_t>(view.width()), row_before = static_cast<std::size_t>(y - first_row) * width;
+    PixelRow row;
+    row.counts.resize(width);
+    RayCut cut;
+    for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t first = intervals.offsets[row_before + x], end = intervals.offsets[row_before + x + 1];
+        if (first == end) continue;
+        const std::size_t before = row.triangles.size();
+        clip.cut(view.ray(static_cast<double>(x) + 0.5, y + 0.5), cut);
+        if (cut.empty()) continue;
+        for (std::size_t i = first; i < end; ++i) {
+            clipper.add(intervals.depths[2 * i], intervals.depths[2 * i + 1], intervals.triangles[i], cut, row);
+        }
+        row.counts[x] = static_cast<std::uint32_t>(row.triangles.size() - before);
+    }
+    return row;
+}
+
+PixelIntervals joined(const std::vector<PixelRow>& rows, std::size_t hits) {
+    PixelIntervals result;
+    result.hits = hits;
+    result.offsets.push_back(0);
+    for (const PixelRow& row : rows) {
+        for (const auto count : row.counts) result.offsets.push_back(result.offsets.back() + count);
+        result.depths.insert(result.depths.end(), row.depths.begin(), row.depths.end());
+        result.triangles.insert(result.triangles.end(), row.triangles.begin(), row.triangles.end());
+    }
+    return result;
+}
+
 /// One interval for each pixel, as deep as all sheets.
 PixelIntervals whole_rays(const View& view, const SheetStack& sheets) {
     const auto pixels = pixel_count(view.width(), view.height());
@@ -91,33 +125,16 @@ PixelIntervals with_material_at_eye(const PixelIntervals& intervals) {
 
 PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip, double middle) {
     std::vector<PixelRow> rows(static_cast<std::size_t>(view.height()));
-    const auto width = static_cast<std::size_t>(view.width());
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
-        const IntervalClipper clipper(clip, middle);
-        PixelRow& row = rows[y];
-        row.counts.resize(width);
-        RayCut cut;
-        for (std::size_t x = 0; x < width; ++x) {
-            const std::size_t first = intervals.offsets[y * width + x], end = intervals.offsets[y * width + x + 1];
-            if (first == end) continue;
-            const std::size_t before = row.triangles.size();
-            clip.cut(view.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5), cut);
-            if (cut.empty()) continue;
-            for (std::size_t i = first; i < end; ++i) {
-                clipper.add(intervals.depths[2 * i], intervals.depths[2 * i + 1], intervals.triangles[i], cut, row);
-            }
-            row.counts[x] = static_cast<std::uint32_t>(row.triangles.size() - before);
-        }
-    });
-    PixelIntervals result;
-    result.hits = intervals.hits;
-    result.offsets.push_back(0);
-    for (const PixelRow& row : rows) {
-        for (const auto count : row.counts) result.offsets.push_back(result.offsets.back() + count);
-        result.depths.insert(result.depths.end(), row.depths.begin(), row.depths.end());
-        result.triangles.insert(result.triangles.end(), row.triangles.begin(), row.triangles.end());
-    }
-    return result;
+    tbb::parallel_for(0, view.height(),
+                      [&](int y) { rows[static_cast<std::size_t>(y)] = clipped_row(intervals, 0, y, view, clip, middle); });
+    return joined(rows, intervals.hits);
+}
+
+PixelIntervals clip_rows(const PixelIntervals& intervals, int first_row, const View& view, const RayClip& clip, double middle) {
+    std::vector<PixelRow> rows;
+    const std::size_t count = (intervals.offsets.size() - 1) / static_cast<std::size_t>(view.width());
+    for (int y = first_row; rows.size() < count; ++y) rows.push_back(clipped_row(intervals, first_row, y, view, clip, middle));
+    return joined(rows, intervals.hits);
 }
 
 bool has_cuts(const SplatScene& scene, const View& view) {

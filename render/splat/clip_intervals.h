@@ -16,6 +16,12 @@ namespace subvol::detail {
 [[nodiscard]] PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip,
                                             double middle);
 
+/// The same for some rows of the picture, by this thread alone.
+///
+/// first_row: the first of those that the intervals are of
+[[nodiscard]] PixelIntervals clip_rows(const PixelIntervals& intervals, int first_row, const View& view, const RayClip& clip,
+                                       double middle);
+
 /// The intervals in which the rays of a picture are inside what is left of a scene's volume. No offsets if there is neither a
 /// boundary nor a clip. Where the eye is inside a solid, a slice at the nearest depth shows the material there (Shading).
 [[nodiscard]] PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const SheetStack& sheets);

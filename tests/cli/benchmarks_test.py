@@ -4,6 +4,9 @@
 import csv
 import importlib.machinery
 import importlib.util
+import subprocess
+import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -11,8 +14,6 @@ TOP = Path(__file__).parents[2]
 
 
 def module_of(path):
-    import sys
-
     loader = importlib.machinery.SourceFileLoader("bench_all", str(path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("bench_all", loader))
     sys.modules["bench_all"] = module
@@ -51,6 +52,38 @@ class Benchmarks(unittest.TestCase):
             self.assertTrue((TOP / f"docs/benchmarks/{task}.svg").is_file())
         for words in ("commit", "Machine:", "Date:", "## Where others need less"):
             self.assertIn(words, page)
+
+
+class Guard(unittest.TestCase):
+    def run_guard(self, folder, burnt, bytes_held):
+        """Its exit code and its rows: a command against one that does as much and something beside."""
+        slow = folder / "slow"
+        slow.write_text(f"#!{sys.executable}\nimport time\nheld = bytearray({bytes_held})\nend = time.process_time() + {burnt}\n"
+                        "while time.process_time() < end: pass\n")
+        quick = folder / "quick"
+        quick.write_text(f"#!{sys.executable}\nimport time\nend = time.process_time() + .2\nwhile time.process_time() < end: pass\n")
+        for program in (slow, quick):
+            program.chmod(0o755)
+        history = folder / "history.csv"
+        done = subprocess.run([sys.executable, TOP / "bench/guard", "--program", slow, "--before", quick, "--only", "folds", "--rounds", "2",
+                               "--history", history], capture_output=True, text=True)
+        with open(history, newline="") as file:
+            return done.returncode, list(csv.DictReader(file))
+
+    def test_what_takes_longer_or_needs_more_than_before_is_found_and_kept(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            code, rows = self.run_guard(folder, .2, 0)
+            self.assertEqual(code, 0, rows)
+            self.assertAlmostEqual(float(rows[0]["cpu_before_s"]), .22, delta=.12)
+            code, rows = self.run_guard(folder, .8, 0)
+            self.assertEqual(code, 1, rows)
+            code, rows = self.run_guard(folder, .2, 50_000_000)
+            self.assertEqual(code, 1, rows)
+            self.assertEqual([row["name"] for row in rows], 3 * ["folds"])
+            self.assertGreater(float(rows[1]["cpu_ratio"]), 2)
+            self.assertGreater(float(rows[2]["peak_ratio"]), 2)
+            self.assertGreater(int(rows[2]["peak_now_bytes"]) - int(rows[2]["peak_before_bytes"]), 45_000_000)
 
 
 if __name__ == "__main__":

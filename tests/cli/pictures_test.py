@@ -280,6 +280,24 @@ class Looks(Pictures):
             # Outlines of a coarse ball differ between the limit and its mesh of level 1.
             self.assertGreater(psnr, 28, method)
 
+    def test_the_error_of_a_picture_is_said_as_it_is_found_with_very_many_sheets(self):
+        picture = ["model:twist:12", "--look", "volume", "--size", "96", "--backend", "cpu"]
+        self.run_ok("render", *picture, "--sheets", "8192", "-o", "many.exr")
+        before = 1
+        for tolerance in (1e-2, 1e-3, 1e-4):
+            said = self.run_ok("render", *picture, "--tolerance-image", tolerance, "-o", "some.exr", "--json").json()
+            found = self.run_ok("compare", "some.exr", "many.exr", "--json").json()
+            self.assertLess(said["image_error"], before / 2)
+            # A sixteenth is left of the error of sheets by four times as many.
+            self.assertAlmostEqual(said["image_error"], found["rmse"], delta=.15 * found["rmse"])
+            self.assertAlmostEqual(said["image_error_max"], found["max"], delta=.25 * found["max"])
+            before = said["image_error"]
+        turntable = [*picture, "--tolerance-image", "1e-2", "--turntable", "2", "-o", "t%d.exr", "--json"]
+        first = self.run_ok("render", *picture, "--tolerance-image", "1e-2", "-o", "t.exr", "--json").json()
+        self.assertGreater(self.run_ok("render", *turntable).json()["image_error"], first["image_error"] / 2)
+        for words in ([], ["--sheets", "50"], ["--method", "tets"]):  # which have no tolerance of sheets
+            self.assertNotIn("image_error", self.run_ok("render", *picture[:5], *words, "-o", "t.exr", "--json").json())
+
     def test_all_methods_cut_a_solid_open_alike(self):
         for cut in (["--clip", "0,0,0,1,-.5,.3"], ["--clip-box=-.5,-9,-.6,.5,.2,9"], ["--slice", "0,0,0,1,-.5,.3"]):
             for method in ["splat", "dense", "tets"]:

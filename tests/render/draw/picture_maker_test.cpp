@@ -132,7 +132,7 @@ TEST(PictureMaker, AnOpaqueSolidIsDrawnByItsFirstHitsAsItsKernelsAndItsBoundaryS
     const View view = view_of(bounds(ball()));
     const Optics optics = optics_of(Look::Solid);
     MethodOptions through_kernels = solid_by(Method::Splat);
-    through_kernels.style.clip.planes.push_back({.point = {0, 0, 9}, .normal = {0, 0, 1}});  // cuts nothing
+    through_kernels.image_tolerance = 1e-3;
     const Picture drawn = PictureMaker({.mesh = ball()}, solid_by(Method::Splat)).draw(view, optics);
     const Picture expected = PictureMaker({.mesh = ball()}, through_kernels).draw(view, optics);
     EXPECT_EQ(number_in(drawn.facts, "sheets"), 0U);
@@ -151,6 +151,43 @@ TEST(PictureMaker, AnOpaqueSolidIsDrawnByItsFirstHitsAsItsKernelsAndItsBoundaryS
     }
     EXPECT_GT(inside, 100U);
     EXPECT_EQ(differ, 0U);
+}
+
+TEST(PictureMaker, ASolidThatIsCutOpenIsDrawnByItsFirstHitsAsItsKernelsShowIt) {
+    HexMesh mesh = ball();
+    mesh.attributes = {{.name = "p", .values = {}}};
+    for (const Vec3& p : mesh.points) mesh.attributes[0].values.push_back(.5 + .3 * std::sin(2 * p.x + p.y) * p.z);
+    const View view({.eye = {0, 0, 9}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 14}, 48, 48);
+    for (const double mean : {0.0, 101325.0}) {  // kernels are relative to large means
+        HexMesh shown = mesh;
+        for (double& value : shown.attributes[0].values) value = mean + (mean > 0 ? .01 * value : value);
+        const double half = mean > 0 ? .01 : 1;
+        const Optics colors = picture_optics({.look = Look::Solid}, bounds(mesh), {mean, mean + half}, {mean, mean + half});
+        MethodOptions cut = solid_by(Method::Splat);
+        cut.style.clip.planes.push_back({.point = {0, 0, .2}, .normal = {0, .1, 1}});
+        MethodOptions through_kernels = cut;
+        through_kernels.image_tolerance = 1e-4;
+        const Picture drawn = PictureMaker({.mesh = shown}, cut).draw(view, colors);
+        const Picture expected = PictureMaker({.mesh = shown}, through_kernels).draw(view, colors);
+        EXPECT_EQ(number_in(drawn.facts, "sheets"), 0U);
+        for (int y = 12; y < 36; ++y) {  // the edge of the cut lies outside
+            for (int x = 12; x < 36; ++x) {
+                for (std::size_t c = 0; c < 4; ++c)
+                    EXPECT_NEAR(drawn.image.pixel(x, y)[c], expected.image.pixel(x, y)[c], 2e-3)
+                        << mean << ' ' << x << ' ' << y;
+            }
+        }
+        // Another cut of the same maker, and none
+        PictureMaker kept({.mesh = shown}, cut);
+        (void)kept.draw(view, colors);
+        MethodOptions other = cut;
+        other.style.clip.planes[0].point.z = -.1;
+        kept.set_style(other.style);
+        EXPECT_EQ(kept.draw(view, colors).image.rgba, PictureMaker({.mesh = shown}, other).draw(view, colors).image.rgba);
+        other.style.clip = {};
+        kept.set_style(other.style);
+        EXPECT_EQ(kept.draw(view, colors).image.rgba, PictureMaker({.mesh = shown}, other).draw(view, colors).image.rgba);
+    }
 }
 
 TEST(PictureMaker, WhereTheEyeIsInsideASolidItsKernelsAreDrawn) {

@@ -7,6 +7,7 @@
 #include "lib/test_meshes.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
+#include "subvol/shading.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
@@ -81,6 +82,58 @@ TEST(DrawBoundary, OpacityAndDepthAreThoseOfTheRaysThatMeetTheBody) {
             for (std::size_t c = 0; c < 4; ++c)
                 EXPECT_EQ(rows.image.pixel(x, y)[c], y >= 9 && y < 23 ? drawn.image.pixel(x, y)[c] : 0.0f);
         }
+    }
+}
+
+TEST(DrawBoundary, ACutShowsTheValuesAtItsPlacesInTheLightOfItsPlane) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    mesh.attributes = {{"a", 1, std::vector<double>(mesh.points.size(), 0)}};
+    const BoundaryValues boundary = boundary_values(mesh, {.levels = 0});
+    const Optics optics(transfer_function_preset("grey", 0, 1), 1);
+    const Shading shading{.ambient = .3, .diffuse = .7, .specular = 0};
+    const Vec3 normal = glm::normalize(Vec3(.4, 0, 1));
+    BoundaryCut cut{.clip = {.planes = {{.point = {.5, .5, .5}, .normal = normal}}}, .value_at = {}};
+    cut.value_at = [](const Vec3& at) { return std::optional(.2 + .5 * at.x * at.y); };
+    for (const bool parallel : {false, true}) {
+        Camera camera{.eye = {.5, .5, 4}, .target = {.5, .5, 0}, .up = {0, 1, 0}, .fovy_deg = 20};
+        if (parallel) camera.ortho_height = 1.3;
+        const View view(camera, 40, 36);
+        const BoundaryPicture drawn =
+            draw_boundary(boundary.surface, boundary.values[0], view, optics, shading, 2, {}, nullptr, cut);
+        EXPECT_EQ(drawn.rays_inside, 0U);
+        const auto& axes = view.axes();
+        std::size_t on_cut = 0;
+        for (int y = 0; y < 36; ++y) {
+            for (int x = 0; x < 40; ++x) {
+                Vec3 color(0.0);
+                double depth = 0;
+                int met = 0;
+                for (int k = 0; k < 4; ++k) {
+                    const Ray ray = view.ray(x + (k % 2 + .5) / 2, y + (k / 2 + .5) / 2);
+                    const double to = glm::dot(Vec3(.5, .5, .5) - ray.origin, normal) / glm::dot(ray.direction, normal);
+                    const Vec3 at = ray.origin + to * ray.direction;
+                    if (at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1 || at.z < 0 || at.z > 1) continue;
+                    const Vec3 to_eye = -glm::normalize(ray.direction);
+                    const auto in_eye = [&](const Vec3& v) {
+                        return Vec3(glm::dot(v, axes[0]), glm::dot(v, axes[1]), glm::dot(v, axes[2]));
+                    };
+                    const detail::SurfaceLight light = detail::surface_light(shading, in_eye(normal), in_eye(to_eye));
+                    color += static_cast<double>(light.diffuse) * optics.color(.2 + .5 * at.x * at.y);
+                    depth += glm::dot(at - view.eye(), axes[2]);
+                    ++met;
+                }
+                if (met < 4) continue;
+                ++on_cut;
+                EXPECT_NEAR(drawn.image.pixel(x, y)[1], color.y / 4, 1e-5) << x << ' ' << y;
+                EXPECT_EQ(drawn.image.pixel(x, y)[3], 1.0f);
+                EXPECT_NEAR(drawn.depth[static_cast<std::size_t>(y) * 40 + static_cast<std::size_t>(x)], depth / 4, 1e-5);
+            }
+        }
+        EXPECT_GT(on_cut, 200U);
+        cut.value_at = [](const Vec3& at) { return at.x < .5 ? std::optional(.2 + .5 * at.x * at.y) : std::nullopt; };
+        EXPECT_GT(draw_boundary(boundary.surface, boundary.values[0], view, optics, shading, 2, {}, nullptr, cut).rays_inside,
+                  on_cut);
+        cut.value_at = [](const Vec3& at) { return std::optional(.2 + .5 * at.x * at.y); };
     }
 }
 

@@ -172,6 +172,12 @@ public:
     [[nodiscard]] Picture draw(const View& view, const Optics& optics, Progress* progress = nullptr,
                                const RbfVolume* stand_in = nullptr);
 
+    /// Draws a picture of the last view again with four times as many sheets, and says how far its colours are from those:
+    /// `image_error`, the RMS over red, green and blue of all pixels, and `image_error_max`. Nothing of pictures that have no
+    /// sheets, or whose number was chosen, of meshes in pieces, and of teams.
+    [[nodiscard]] Facts measure_error(const Picture& picture, const View& view, const Optics& optics,
+                                      Progress* progress = nullptr);
+
     /// The points that a named view frames; empty: the bounding box.
     [[nodiscard]] std::vector<Vec3> framed_points(const Optics& optics, Progress* progress, Facts& facts);
     /// Whether the colours of the style's pictures are those of the boundary.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,20 +38,28 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
 void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
                     const Optics& optics, const Shading& shading, int samples = 1, const Clip& clip = {});
 
+/// How an opaque body is cut open.
+struct BoundaryCut {
+    Clip clip{};  ///< without slices
+    /// The value at a place on a face of the cut; none where there is none. For several threads at once.
+    std::function<std::optional<double>(const Vec3&)> value_at{};
+};
+
 /// The picture of a body that is opaque from its boundary on, without its inside.
 struct BoundaryPicture {
     Image image;                  ///< colours times opacity; the opacity is the part of a pixel's rays that meet the body
     std::vector<float> depth;     ///< of each pixel the mean eye depth of its hits; infinity where there is none
-    std::size_t rays_inside = 0;  ///< rays that begin inside, which see nothing
+    std::size_t rays_inside = 0;  ///< rays that begin inside, or at a cut where there is no value: they see nothing
 };
 
-/// Draws such a body by the values on its boundary alone, as `color_boundary` colours it, where nothing cuts it.
+/// Draws such a body by the values on its boundary, as `color_boundary` colours it, and on the faces of a cut alone.
 ///
 /// boundary, values, samples: as of `color_boundary`
 /// rows:   of the picture that are drawn; the others stay transparent
 /// throws: Error(InvalidInput) as `color_boundary`
 [[nodiscard]] BoundaryPicture draw_boundary(const Surface& boundary, std::span<const double> values, const View& view,
                                             const Optics& optics, const Shading& shading, int samples = 1,
-                                            const PixelRows& rows = {}, Progress* progress = nullptr);
+                                            const PixelRows& rows = {}, Progress* progress = nullptr,
+                                            const BoundaryCut& cut = {});
 
 }  // namespace subvol
