@@ -9,6 +9,7 @@
 
 #include "input.h"
 #include "quantities.h"
+#include "subvol/field_bounds.h"
 #include "subvol/part_of_limit.h"
 #include "subvol/warp.h"
 #include "text.h"
@@ -20,6 +21,8 @@ namespace {
 std::vector<std::string> asked_quantities(const CommonOptions& options) {
     std::vector<std::string> asked = options.at_rest;
     if (options.field) asked.push_back(*options.field);
+    if (options.density) asked.push_back(*options.density);
+    for (const std::string& region : options.only) asked.push_back(region.substr(region.find(':') + 1));
     if (options.warp) asked.push_back(of_option("--warp", [&] { return parse_warp(*options.warp); }).field);
     return asked;
 }
@@ -100,6 +103,9 @@ Facts take_incomplete(ReadResult& read, const std::string& input, const CommonOp
         mesh.attributes.push_back(std::move(field));
     }
     mesh = only_cells(mesh, kept);
+    if (const std::vector<std::string> fractions = bound_fractions(mesh); !fractions.empty())
+        facts.warn(join(fractions) + (fractions.size() == 1 ? " is a fraction: it stays" : " are fractions: they stay") +
+                   " within 0 and 1 between the points, too");
     read.sets = sets_of_cells(std::move(read.sets), kept);
     read.cell_means.clear();
     read.cell_parts.clear();

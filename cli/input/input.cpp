@@ -97,16 +97,70 @@ HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, P
 
 constexpr std::string_view kBlockPrefix = "block:";
 
+/// Takes the field of that name out of a step, with its gaps, if it has some there; nothing if the step has no such field.
+std::optional<Attribute> field_of_step(const ReadResult& step, const std::string& name) {
+    const auto with_gaps = std::ranges::find(step.incomplete, name, &Attribute::name);
+    if (with_gaps != step.incomplete.end()) return *with_gaps;
+    const Attribute* const whole = step.mesh.find_attribute(name);
+    return whole == nullptr ? std::nullopt : std::optional(*whole);
+}
+
+/// Makes the fields that one of two steps has with gaps those between the steps: they have gaps where either has them. The
+/// meshes have no longer those that were whole in one of the steps.
+void put_gaps_between(ReadResult& before, ReadResult& after, double part) {
+    std::vector<std::string> names;
+    for (const ReadResult* step : {&before, &after}) {
+        for (const Attribute& field : step->incomplete) {
+            if (std::ranges::find(names, field.name) == names.end()) names.push_back(field.name);
+        }
+    }
+    HexMesh first{before.mesh.points, before.mesh.cells}, second{after.mesh.points, after.mesh.cells};
+    for (const std::string& name : names) {
+        std::optional<Attribute> a = field_of_step(before, name), b = field_of_step(after, name);
+        for (ReadResult* step : {&before, &after})
+            std::erase_if(step->mesh.attributes, [&](const Attribute& field) { return field.name == name; });
+        if (!a || !b) continue;
+        first.attributes.push_back(std::move(*a));
+        second.attributes.push_back(std::move(*b));
+    }
+    before.incomplete = mesh_between(std::move(first), second, part).attributes;
+    std::erase_if(before.fields, [&](const FieldInfo& info) {
+        return before.mesh.find_attribute(info.name) == nullptr &&
+               std::ranges::find(before.incomplete, info.name, &Attribute::name) == before.incomplete.end();
+    });
+    for (const Attribute& field : before.incomplete) {
+        const auto info = std::ranges::find(before.fields, field.name, &FieldInfo::name);
+        if (info == before.fields.end()) continue;
+        const auto channels = static_cast<std::size_t>(field.channels);
+        const std::vector<double>& values = field.cells.empty() ? field.values : field.cells;
+        info->missing = 0;
+        std::optional<std::array<double, 2>> range;
+        for (std::size_t i = 0; i + channels <= values.size(); i += channels) {
+            double square = 0;
+            for (std::size_t c = 0; c < channels; ++c) square += values[i + c] * values[i + c];
+            const double value = channels == 1 ? values[i] : std::sqrt(square);
+            info->missing += std::isnan(value) ? 1 : 0;
+            if (std::isnan(value)) continue;
+            if (!range) range = {value, value};
+            range = {std::min((*range)[0], value), std::max((*range)[1], value)};
+        }
+        if (!range) continue;
+        info->min = (*range)[0];
+        info->max = (*range)[1];
+    }
+}
+
 /// What lies between two steps: points and values linearly, the rest as in the step before.
 ReadResult read_between(const std::string& input, const BetweenSteps& between, double time, ReadOptions options, Facts& facts) {
     options.step = between.after;
-    const ReadResult after = read_mesh(input, options);
+    ReadResult after = read_mesh(input, options);
     options.step = between.before;
     ReadResult read = read_mesh(input, options);
     const auto name_of_time = [](const ReadResult& step) { return step.mesh.time.value_or(0); };
     facts.note(text("time ", time, " is interpolated between step ", between.before, " (time ", name_of_time(read),
                     ") and step ", between.after, " (time ", name_of_time(after), ")"));
     facts["interpolated"] = between.part;
+    of_option("--interpolate-time", [&] { put_gaps_between(read, after, between.part); });
     read.mesh = of_option("--interpolate-time", [&] { return mesh_between(std::move(read.mesh), after.mesh, between.part); });
     read.mesh.time = time;
     read.cell_means.clear();  // as in no step

@@ -187,6 +187,10 @@ public:
                                                   ") are not everywhere; the first has no value at ") +
                                        gaps_);
         }
+        if (!unfitted_.empty())
+            result_.warnings.push_back(listed(unfitted_) +
+                                       (unfitted_.size() == 1 ? " has gaps, so it is" : " have gaps, so they are") +
+                                       " not fitted to the means over the cells, but the mean of these at each point");
         distinct_.report(result_.warnings);
         if (!labels_.empty()) {
             result_.warnings.push_back(
@@ -257,8 +261,14 @@ private:
         attribute.constant = true;
         for (const auto& cell : result_.mesh.cells) {
             std::map<double, int> votes;
+            bool everywhere = true;
             for (const Index p : cell) {
-                if (!sources || (*sources)[p].size() == 1) ++votes[attribute.values[p]];
+                everywhere = everywhere && !std::isnan(attribute.values[p]);
+                if (everywhere && (!sources || (*sources)[p].size() == 1)) ++votes[attribute.values[p]];
+            }
+            if (!everywhere) {
+                attribute.cells.push_back(std::numeric_limits<double>::quiet_NaN());
+                continue;
             }
             const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
             attribute.cells.push_back(std::ranges::max_element(votes, fewer)->first);  // the first of those with as many
@@ -280,7 +290,11 @@ private:
         if (array.at_cells) {
             field.cells = of_cells(kept);
             field.values = mean_over_cells(mesh, field.cells, components);
-            field.constant = cell_values_ == CellValues::Constant || (array.integers && names_label(array.name));
+            std::vector<double> there;
+            std::ranges::copy_if(field.cells, std::back_inserter(there), [](double value) { return !std::isnan(value); });
+            field.constant = cell_values_ == CellValues::Constant ||
+                             (cell_values_ == CellValues::Auto && !there.empty() && is_label(array, there));
+            if (!field.constant && are_means(cell_values_)) unfitted_.push_back(in_quotes(array.name));
             all = mesh.cells.size();
             for (std::size_t c = 0; c < all; ++c) info.missing += has_all(field.cells, c, components) ? 0 : 1;
         } else {
@@ -288,7 +302,13 @@ private:
                 all += origin_.used[p];
                 if (origin_.used[p]) info.missing += has_all(kept.values, p, components) ? 0 : 1;
             }
-            field.values = from_points(std::move(kept));
+            FileArray there = kept;
+            std::erase_if(there.values, [](double value) { return std::isnan(value); });
+            if (cell_values_ != CellValues::Mean && !there.values.empty() && is_label_at_points(there)) {
+                take_labels(kept, field);
+            } else {
+                field.values = from_points(std::move(kept));
+            }
         }
         const auto complete = static_cast<std::size_t>(std::ranges::count_if(mesh.cells, [&](const auto& cell) {
             return std::ranges::all_of(cell, [&](Index p) { return has_all(field.values, p, components); });
@@ -301,7 +321,7 @@ private:
                     (array.at_cells ? "cells" : std::string(names_.point_word) + "s") +
                     (cells == 0 ? ", and no cell has it at all of its points"
                                 : ": asked for by its name, it is that of the " + std::to_string(cells) + " of " +
-                                      counted(mesh.cells.size(), "cell", "cells") + " that have it");
+                                      counted(mesh.cells.size(), "cell", "cells") + " that have it; otherwise it is left out");
         }
         incomplete_.push_back(in_quotes(array.name));
         info.name = field.name;
@@ -394,7 +414,7 @@ private:
     const EntityNames& names_;
     CellValues cell_values_;
     NamesApart distinct_{"array"};
-    std::vector<std::string> averaged_, labels_, point_labels_, incomplete_;
+    std::vector<std::string> averaged_, labels_, point_labels_, incomplete_, unfitted_;
     std::string gaps_;  // of the first of these
     std::vector<UnreadField> unread_;
 };

@@ -130,6 +130,8 @@ private:
             if (is_new) all_.ignored.push_back(part);
             if (!is_new) all_.ignored[at->second].count += part.count;
         }
+        if (all_.time && piece.time && *all_.time != *piece.time && said_.insert("times").second)
+            all_.warnings.push_back("not every " + std::string(word_) + " is of the same time: that of the first is taken");
         if (!all_.time) all_.time = piece.time;
         all_.cut = all_.cut || piece.cut;
         all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
@@ -344,18 +346,20 @@ private:
         struct Named {
             const FileArray* first;
             std::vector<std::pair<std::size_t, const FileArray*>> of_pieces;
+            std::size_t others = 0;  // arrays with other components
         };
         std::vector<Named> named;
         std::map<std::pair<std::string_view, bool>, std::size_t> places;
         for (const MeshFile& piece : pieces_) {
             for (const FileArray& array : piece.arrays) {
-                if (places.try_emplace({array.name, array.at_cells}, named.size()).second) named.push_back({&array, {}});
+                if (places.try_emplace({array.name, array.at_cells}, named.size()).second) named.push_back({&array, {}, 0});
             }
         }
         for (std::size_t k = 0; k < pieces_.size(); ++k) {
             for (const FileArray& array : pieces_[k].arrays) {
                 Named& of_name = named[places.at({array.name, array.at_cells})];
                 const bool has_one = !of_name.of_pieces.empty() && of_name.of_pieces.back().first == k;
+                of_name.others += array.components == of_name.first->components ? 0 : 1;
                 if (!has_one && array.components == of_name.first->components) of_name.of_pieces.emplace_back(k, &array);
             }
         }
@@ -365,7 +369,10 @@ private:
         for (const MeshFile& piece : pieces_) {
             for (const FileArray& array : piece.arrays) values += array.values.size();
         }
-        for (const auto& [first, of_pieces] : named) {
+        for (const auto& [first, of_pieces, others] : named) {
+            if (others > 0)
+                all_.ignore({"array", first->name, others,
+                             "it has other numbers of components than in the first " + std::string(word_) + " that has it"});
             std::vector<const FileArray*> parts(pieces_.size(), nullptr);
             for (const auto& [piece, array] : of_pieces) parts[piece] = array;
             if (first->name == kGhostArray || of_pieces.size() == pieces_.size()) {  // where there are no ghosts, it may lack

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Arrays by which files of ours hold what VTK has no place for: field data with creases, sharp faces and patches as lists of
+// points, arrays at cells and points that are 1 in a set and 0 elsewhere, and the time. Lists of points begin with a mark of
+// the mesh (its counts and a hash of its cells), so that those of another mesh are not believed.
 #include "mesh_arrays.h"
 
 #include <algorithm>
@@ -176,8 +179,12 @@ bool is_time_array(std::string_view name) {
     return name == "TimeValue" || name == "TIME";
 }
 
-void take_time(std::span<const double> values, MeshFile& found) {
-    if (values.size() == 1 && std::isfinite(values[0])) found.time = values[0];
+void take_time(std::string_view name, std::span<const double> values, MeshFile& found) {
+    if (values.size() == 1 && std::isfinite(values[0])) {
+        found.time = values[0];
+    } else {
+        found.ignored.push_back({"array", std::string(name), 1, "it is not one finite time"});
+    }
 }
 
 void take_field_arrays(std::span<const NamedNumbers> arrays, MeshFile& found) {

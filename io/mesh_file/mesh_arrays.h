@@ -40,7 +40,7 @@ struct NamedNumbers {
 [[nodiscard]] bool is_time_array(std::string_view name);
 
 /// Takes the time of the mesh from what such an array has, unless it is not one finite number.
-void take_time(std::span<const double> values, MeshFile& found);
+void take_time(std::string_view name, std::span<const double> values, MeshFile& found);
 
 /// The arrays of a mesh; patches without sides have none.
 [[nodiscard]] std::vector<NamedNumbers> field_arrays(const HexMesh& mesh, const MeshSets& sets);

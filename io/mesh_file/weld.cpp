@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <numeric>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "assemble.h"
 #include "subvol/detail/point_welder.h"
@@ -16,6 +22,56 @@ void for_each_cell(MeshFile& found, const Call& call) {
     each_kind(found, [&](auto& cells) { std::ranges::for_each(cells.corners, call); });
 }
 
+/// The arrays at points that have gaps, while points are welded. A point that has no value gets that of one that is welded to
+/// it. If cells that lacked an array then seem to have it, as those between two layers that do, it is left out.
+class GapsOfWelded {
+public:
+    explicit GapsOfWelded(MeshFile& found) : found_(found) {
+        for (const FileArray& array : found.arrays) {
+            const bool gaps = !array.at_cells && std::ranges::any_of(array.values, [](double v) { return !std::isfinite(v); });
+            if (gaps) whole_before_[array.name] = whole_cells(array);
+        }
+    }
+
+    /// After the cells have the points that are left. joined: for each point the one that it became, or kNone
+    void fill(std::span<const Index> joined) {
+        std::erase_if(found_.arrays, [&](FileArray& array) {
+            const auto before = whole_before_.find(array.name);
+            if (array.at_cells || before == whole_before_.end()) return false;
+            const auto components = static_cast<std::size_t>(array.components);
+            for (std::size_t p = 0; p < joined.size(); ++p) {
+                const std::size_t q = joined[p];
+                if (q == kNone || q == p || is_there(array, q) || !is_there(array, p)) continue;
+                std::copy_n(&array.values[p * components], components, &array.values[q * components]);
+            }
+            const std::vector<std::uint8_t> after = whole_cells(array);
+            if (std::ranges::equal(after, before->second, std::ranges::less_equal())) return false;
+            found_.ignore(
+                {"array", array.name, 1, "cells without it lie between those that have it, and their points are welded"});
+            return true;
+        });
+    }
+
+private:
+    [[nodiscard]] static bool is_there(const FileArray& array, std::size_t p) {
+        const auto components = static_cast<std::size_t>(array.components);
+        return std::ranges::all_of(std::span(array.values).subspan(p * components, components),
+                                   [](double value) { return std::isfinite(value); });
+    }
+
+    /// A flag for each cell: all of its corners have a value.
+    [[nodiscard]] std::vector<std::uint8_t> whole_cells(const FileArray& array) const {
+        std::vector<std::uint8_t> whole;
+        for_each_cell(found_, [&](const auto& cell) {
+            whole.push_back(std::ranges::all_of(cell, [&](Index p) { return is_there(array, p); }) ? 1 : 0);
+        });
+        return whole;
+    }
+
+    MeshFile& found_;
+    std::map<std::string, std::vector<std::uint8_t>> whole_before_;
+};
+
 }  // namespace
 
 void weld_points(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
@@ -24,6 +80,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
         for (const Index p : cell) joined[p] = p;
     });
     for (const Index p : found.curved.nodes) joined[p] = p;
+    GapsOfWelded gaps(found);
     PointWelder welder(found.points, tolerance);
     std::size_t welded = 0;
     for (Index p = 0; p < joined.size(); ++p) {
@@ -42,6 +99,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
             cell[k] = joined[cell[k]];
         }
     });
+    gaps.fill(joined);
     for (Index& p : found.curved.nodes) p = joined[p];
     // The points of shells come last, so that the cells have the points that they have without shells.
     const auto join_shell = [&](auto& corners) {

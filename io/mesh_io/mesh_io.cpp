@@ -283,6 +283,8 @@ std::string way_to(const std::filesystem::path& path) {
                " (Debian: " + foreign->packages + ")";
     }
     if (extension == ".unv") return "; gmsh -save -format msh4 -o mesh.msh " + path.filename().string() + " converts it";
+    if (extension == ".re2" || extension == ".rea")
+        return "; ParaView opens the results of a run of Nek5000 (NAME.nek5000) and saves them as .vtu files";
     constexpr std::array<std::string_view, 7> kUnknown{".k", ".key", ".cdb", ".ans", ".op2", ".mphtxt", ".pf3"};
     if (std::ranges::find(kUnknown, extension) != kUnknown.end()) {
         return "; meshio cannot read them either: export one of these from the program that made them";
@@ -427,7 +429,8 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         const std::vector<double> times = format.times(path);
         result.steps = std::max<std::size_t>(times.size(), 1);
         result.step = resolved.step.value_or(result.steps - 1);
-        if (result.steps > 1) result.mesh.time = times[result.step];
+        // A list of one file says its time; other formats of one step have none.
+        if (result.steps > 1 || (format.files != nullptr && times.size() == 1)) result.mesh.time = times[result.step];
         warn_of_time(options.time, times, result);
     } else {
         warn_of_time(options.time, {}, result);

@@ -214,6 +214,81 @@ class BlocksWithFieldsOfTheirOwnTest(InFolder):
                                .json()["stats"]["whole"]["fields"][0]["mean"], 2.5, delta=1e-9)
 
 
+class BlocksInTimeAndWeldedTest(InFolder):
+    """Fields of one block between two steps, and where the points of blocks are welded."""
+
+    def write(self, name, cubes):
+        """cubes: (first x, fields, field at the cell) of each block"""
+        blocks = ""
+        for k, (x, fields, at_cell) in enumerate(cubes):
+            (self.folder / f"{name}{k}.vtu").write_text(cube_file(x, fields, at_cell))
+            blocks += f'<DataSet index="{k}" name="block{k}" file="{name}{k}.vtu"/>'
+        (self.folder / f"{name}.vtm").write_text('<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>'
+                                                 f"{blocks}</vtkMultiBlockDataSet></VTKFile>")
+
+    def mean(self, file, field, *more):
+        done = self.run_ok("probe", file, "--stats", "--field", field, "--scheme", "linear", "--json", *more).json()
+        return round(done["stats"]["whole"]["volume"], 5), round(done["stats"]["whole"]["fields"][0]["mean"], 5)
+
+    def test_between_steps(self):
+        h = {"h": lambda x, y, z: z}
+        self.write("a", [(0, {"T": lambda x, y, z: x, **h}, "W"), (1, h, "")])
+        self.write("b", [(0, {"T": lambda x, y, z: x + 100, **h}, "W"), (1, h, "")])
+        self.write("c", [(0, h, ""), (1, {"T": lambda x, y, z: x, **h}, "W")])
+        for name, last in ("ab", "b"), ("ac", "c"):
+            (self.folder / f"{name}.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="1" file="a.vtm"/>'
+                                                     f'<DataSet timestep="2" file="{last}.vtm"/></Collection></VTKFile>')
+        time = ["--time", 1.25, "--interpolate-time"]
+        self.assertEqual(self.mean("ab.pvd", "T", *time), (1, 25.5))
+        self.assertEqual(self.mean("ab.pvd", "W", *time), (1, 5))
+        self.assertEqual(self.mean("ab.pvd", "h", *time), (2, .5))
+        found = {f["name"]: (f["min"], f["max"], f.get("missing")) for f in self.run_ok("info", "ab.pvd", *time, "--json").json()["fields"]}
+        self.assertEqual(found, {"h": (0, 1, None), "T": (25, 26, 4), "W": (5, 5, 1)})
+        done = subvol("probe", "ac.pvd", "--stats", "--field", "T", *map(str, time), folder=self.folder)
+        self.assertEqual(done.code, 2)  # no cell has it in both steps
+        self.assertIn("no cell has 'T'", done.err)
+
+    def test_a_list_of_one_step_has_its_time(self):
+        self.write("a", [(0, {"T": lambda x, y, z: x}, "")])
+        (self.folder / "one.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="10" file="a.vtm"/></Collection></VTKFile>')
+        self.assertEqual(self.mean("one.pvd", "2*time"), (1, 20))
+        self.assertEqual(self.run_ok("info", "one.pvd", "--json").json()["times"], [10])
+
+    def test_welded_points_have_the_value_that_is_there(self):
+        with_t, without = {"T": lambda x, y, z: x}, {"h": lambda x, y, z: z}
+        for name, cubes in ("first", [(0, with_t, ""), (1.0000001, without, "")]), ("last", [(1.0000001, without, ""), (0, with_t, "")]):
+            self.write(name, cubes)
+            self.assertEqual(self.mean(f"{name}.vtm", "T", "--weld-distance", "1e-5"), (1, .5))
+        self.write("between", [(0, with_t, "W"), (2.0000002, with_t, "W"), (1.0000001, without, "")])
+        done = subvol("probe", "between.vtm", "--stats", "--field", "T", "--weld-distance", "1e-5", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn('array "T" ignored: cells without it lie between those that have it, and their points are welded',
+                      self.run_ok("info", "between.vtm", "--weld-distance", "1e-5").err)
+        self.assertEqual(self.mean("between.vtm", "W", "--weld-distance", "1e-5"), (2, 5))
+
+    def test_labels_fractions_and_fits(self):
+        halves = {"MaterialId": lambda x, y, z: 1 + (x > 0), "alpha.water": lambda x, y, z: 1 if x > 0 and z > 0 else 0}
+        self.write("a", [(0, halves, "q"), (1, {}, "")])
+        at = self.run_ok("probe", "a.vtm", "--field", "MaterialId", "--at", ".3,.5,.5", "--json").json()
+        self.assertEqual(at["values"][0]["value"], 1)
+        done = self.run_ok("probe", "a.vtm", "--stats", "--field", "alpha.water", "--json").json()["stats"]["whole"]["fields"][0]
+        self.assertEqual((done["min"], done["max"]), (0, 1))
+        done = self.run_ok("probe", "a.vtm", "--stats", "--field", "q", "--cell-values", "fit")
+        self.assertIn('"q" has gaps, so it is not fitted to the means over the cells', done.err)
+        self.assertNotIn("fitted", self.run_ok("probe", "a.vtm", "--stats", "--field", "q").err)
+
+    def test_other_numbers_of_components_are_named(self):
+        self.write("a", [(0, {"T": lambda x, y, z: x}, ""), (1, {"T": lambda x, y, z: (1, 2, 3)}, "")])
+        parts = self.run_ok("info", "a.vtm", "--json").json()["ignored"]
+        self.assertEqual([(part["kind"], part["name"], part["count"]) for part in parts], [("array", "T", 1)])
+        self.assertIn("other numbers of components", parts[0]["reason"])
+        self.assertEqual(self.mean("a.vtm", "T"), (1, .5))
+
+    def test_regions_of_such_fields(self):
+        self.write("a", [(0, {"T": lambda x, y, z: 1, "h": lambda x, y, z: z}, ""), (1, {"h": lambda x, y, z: z}, "")])
+        self.assertEqual(self.mean("a.vtm", "h", "--only", "where:T>.5"), (1, .5))
+
+
 class MissingStepsTest(InFolder):
     def setUp(self):
         super().setUp()

@@ -36,7 +36,7 @@ class Ignored(InFolder):
                 "*Material, name=steel\n*Elastic\n210000, .3\n*STEP\n*STATIC\n*Boundary\n1, 1, 3\n*Boundary\n2, 1\n*Dload\nends, P1, 1\n*END STEP\n")
         found = self.listed(self.write("a.inp", text))
         self.assertEqual(found, {("keyword", "*MATERIAL", 1), ("keyword", "*ELASTIC", 1), ("keyword", "*STEP", 1), ("keyword", "*STATIC", 1),
-                                 ("keyword", "*BOUNDARY", 2), ("keyword", "*DLOAD", 1), ("keyword", "*ENDSTEP", 1), ("element type", "S4R", 1),
+                                 ("keyword", "*BOUNDARY", 2), ("keyword", "*DLOAD", 1), ("keyword", "*END STEP", 1), ("element type", "S4R", 1),
                                  ("element type", "MASS", 1), ("set of nodes", "lost", 1), ("surface", "s", 1),
                                  ("surface", "nodes", 1), ("patch", "inside", 1)})
         self.assertIn("it is of type NODE", self.reasons["s"])
@@ -81,7 +81,7 @@ class Ignored(InFolder):
     def test_the_time_of_one_file(self):
         vtu = VTU.format(x=0, y=1).replace('"energy"', '"TimeValue"')
         vtk = X_AND_Z.replace("POINTS 8", "FIELD FieldData 2\nCYCLE 1 1 int\n4\nTIME 1 1 double\n2.5\nPOINTS 8")
-        for name, text, time, others in (("a.vtu", vtu, 7, {"names"}), ("a.vtk", vtk, 2.5, {"CYCLE"}), ("n.vtu", vtu.replace(">7<", ">nan<"), 0, {"names"}),
+        for name, text, time, others in (("a.vtu", vtu, 7, {"names"}), ("a.vtk", vtk, 2.5, {"CYCLE"}), ("n.vtu", vtu.replace(">7<", ">nan<"), 0, {"names", "TimeValue"}),
                                          ("two.vtu", vtu.replace('NumberOfTuples="1" format="ascii">7', 'NumberOfTuples="2" format="ascii">7 8'), 0,
                                           {"names", "TimeValue"})):
             with self.subTest(name):

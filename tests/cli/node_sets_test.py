@@ -68,6 +68,12 @@ class NodeSets(InFolder):
         found = self.sets("a.inp")
         self.assertEqual({name: 2 * count for name, count in COUNTS.items()}, {name: found[name] for name in COUNTS})
         self.assertEqual((found["of two"], found["of both"]), (2, 5))
+        text = (self.folder / "a.inp").read_text().replace("*END ASSEMBLY", "*ELSET, ELSET=far, INSTANCE=two\n2, 3\n*NSET, NSET=at far, ELSET=far\n"
+                                                           "*NSET, NSET=ends of one, ELSET=one.ends\n*NSET, NSET=no, ELSET=one.far\n*END ASSEMBLY")
+        (self.folder / "a.inp").write_text(text)
+        found = self.sets("a.inp")
+        self.assertEqual((found["at far"], found["ends of one"]), (12, 16))
+        self.assertIn('"by none", "no"): a.inp, line', self.run_ok("info", "a.inp").err)
 
     def test_files_of_ours_keep_them(self):
         self.deck()

@@ -264,7 +264,7 @@ void VtkArrayReader::read_field_array() {
     if (!in_data_ && is_time_array(name) && components * tuples == 1) {
         values_.begin(type);
         const double time = values_.real({what, 0});
-        take_time({&time, 1}, found_);
+        take_time(name, {&time, 1}, found_);
         return;
     }
     if (!in_data_) {

@@ -233,7 +233,7 @@ private:
             const std::string path = kRoot + "/FieldData/" + name;
             const auto there = is_field_array(name) ? file_.find(path) : std::nullopt;
             if (is_time_array(name) && file_.has(path) && file_.rows(path) == 1 && file_.columns(path) == 1) {
-                take_time(file_.reals(path), found);
+                take_time(name, file_.reals(path), found);
                 continue;
             }
             if (!there) {

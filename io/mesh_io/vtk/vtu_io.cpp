@@ -199,7 +199,7 @@ private:
         for (const auto& array : element.children()) {
             const std::string name = as_utf8(array.attribute("Name").as_string());
             if (is_time_array(name) && arrays_.size(array) == 1) {
-                arrays_.each_real(array, [&](std::span<const double> values) { take_time(values, found_); });
+                arrays_.each_real(array, [&](std::span<const double> values) { take_time(name, values, found_); });
                 continue;
             }
             if (!is_field_array(name)) {

@@ -263,18 +263,36 @@ private:
             }
         }
         if (keyword == "*SURFACE") start_surface();
-        if (section_ == Section::Other && !kStructure.contains(keyword)) ++deck_.other_keywords[keyword];
+        if (section_ == Section::Other && !kStructure.contains(keyword)) ++deck_.other_keywords[upper_case(fields.front())];
         const bool has_data = section_ == Section::Node || section_ == Section::Element;
         return has_data && values_.contains("INPUT") ? std::optional(values_["INPUT"]) : std::nullopt;
     }
 
     // *NSET, ELSET: the nodes of the elements that are in the set so far.
     void take_nodes_of_elements() {
-        const std::string& name = values_["ELSET"];
+        const std::string name = values_["ELSET"];
+        const std::string scope = scope_;
+        bool found = add_nodes_of(name);
+        // A set of the assembly may have members in every instance, and those of one may be meant.
+        for (const InpInstance& instance : deck_.instances) {
+            if (!scope.empty() || instance.inside.empty()) break;
+            count_members(1);
+            scope_ = instance.inside;
+            const std::string prefix = instance.inside.substr(1) + ".";
+            const bool of_this = upper_case(name).starts_with(prefix);
+            found |= add_nodes_of(of_this ? std::string_view(name).substr(prefix.size()) : std::string_view(name));
+        }
+        scope_ = scope;
+        if (!found) return leave_out_set("there is no set of elements " + in_quotes(name));
+        section_ = Section::Other;  // it has no data
+    }
+
+    // Returns whether the part or instance that the line is about has that set of elements.
+    bool add_nodes_of(std::string_view name) {
         kind_ = &InpPart::sets;
         const InpSet* const of_elements = set_named(name);
         kind_ = &InpPart::node_sets;
-        if (of_elements == nullptr) return leave_out_set("there is no set of elements " + in_quotes(name));
+        if (of_elements == nullptr) return false;
         const std::unordered_set<std::int64_t> numbers(of_elements->numbers.begin(), of_elements->numbers.end());
         const auto has = [&](std::int64_t number) {
             return numbers.contains(number) || std::ranges::any_of(of_elements->ranges, [&](const auto& range) {
@@ -292,7 +310,7 @@ private:
         count_members(nodes.size());
         InpSet& set = set_of(values_["NSET"]);
         set.numbers.insert(set.numbers.end(), nodes.begin(), nodes.end());
-        section_ = Section::Other;  // it has no data
+        return true;
     }
 
     void start_surface() {

@@ -488,6 +488,7 @@ TEST_F(VtkIo, FirstBytesDecideWhereTheExtensionIsUnknown) {
     EXPECT_THAT(read_error("a.dump", "nothing"), HasSubstr("\".dump\" files cannot be read"));
     EXPECT_THAT(read_error("a.med", "nothing"), HasSubstr("python3 -m subvol.convert a.med mesh.vtu converts it"));
     EXPECT_THAT(read_error("a.unv", "nothing"), HasSubstr("gmsh -save"));
+    EXPECT_THAT(read_error("a.re2", "nothing"), HasSubstr("NAME.nek5000"));
     EXPECT_THAT(read_error("a.k", "nothing"), HasSubstr("meshio cannot read them either"));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.dump"), make_box(1, 1, 1)); }), HasSubstr("files cannot be written"));
 }
