@@ -114,7 +114,7 @@ void put_gaps_between(ReadResult& before, ReadResult& after, double part) {
             if (std::ranges::find(names, field.name) == names.end()) names.push_back(field.name);
         }
     }
-    HexMesh first{before.mesh.points, before.mesh.cells}, second{after.mesh.points, after.mesh.cells};
+    HexMesh first{before.mesh.points, before.mesh.cells, {}, {}, {}}, second{after.mesh.points, after.mesh.cells, {}, {}, {}};
     for (const std::string& name : names) {
         std::optional<Attribute> a = field_of_step(before, name), b = field_of_step(after, name);
         for (ReadResult* step : {&before, &after})
@@ -328,7 +328,7 @@ CommonOptions with_whole_cells(CommonOptions options, std::vector<Region>& space
 }
 
 std::string input_help() {
-    return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
+    return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME[:RESOLUTION]";
 }
 
 InputKind kind_of(const std::string& input) {

@@ -410,9 +410,13 @@ private:
             }
             for (std::size_t k = 0; k < parts.size(); ++k) {
                 if (parts[k] != nullptr) continue;
+                const FileArray* const ghosts = find_array(pieces_[k], kGhostArray, true, 1);
                 each_kind(pieces_[k], [&](const auto& cells) {
-                    for (const auto& corners : cells.corners)
-                        between = between || std::ranges::all_of(corners, [&](Index p) { return has_value[p] != 0; });
+                    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+                        if (ghosts != nullptr && !cells.numbers.empty() && leaves_out_cell(ghosts->values[cells.numbers[c]]))
+                            continue;
+                        between = between || std::ranges::all_of(cells.corners[c], [&](Index p) { return has_value[p] != 0; });
+                    }
                 });
             }
         }

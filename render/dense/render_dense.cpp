@@ -257,12 +257,15 @@ public:
 
 private:
     /// Where light does not come far, most grids inside are not seen. Makes those at the boundary, and as long as rays come to
-    /// others, these and some around them: twice as many layers each time. False if that does not pay, or needs too much
-    /// memory; then nothing has been done.
+    /// others, these and some around them: twice as many layers each time. False if that does not pay, needs too much memory,
+    /// or rays begin in the body's box, as they may begin in a grid that is not there; then nothing has been done.
     bool draw_from_outside() {
         constexpr double kFar = .1;              // of the diagonal
         constexpr std::size_t kMostWaiting = 4;  // one pixel of so many; then all grids are made
-        if (clip_.has_slices() || !(farthest_sight(optics_) < kFar * bounds(mesh_).diagonal())) return false;
+        const Box box = bounds(mesh_);
+        if (clip_.has_slices() || !(farthest_sight(optics_) < kFar * box.diagonal())) return false;
+        const Vec3& eye = view_.eye();
+        if (glm::all(glm::lessThanEqual(box.lower, eye)) && glm::all(glm::lessThanEqual(eye, box.upper))) return false;
         std::vector<std::uint8_t> made = cells_at_boundary(mesh_, sides_);
         std::vector<Index> wanted;
         for (Index c = 0; c < made.size(); ++c) {

@@ -42,6 +42,17 @@ class Methods(InFolder):
         self.run_ok("vdb", "model:ball:3", "-o", "ball.vdb", "--resolution", 12)
         self.run_ok("split", "model:ball:3", "-o", "ball.bricks", "--bricks", 2)
 
+    def test_the_eye_in_the_body_sees_the_cells_around_it(self):
+        values = " ".join(str(x) for _ in range(49) for x in range(7))
+        (self.folder / "x.vtk").write_text("# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 7 7 7\nORIGIN 0 0 0\n"
+                                           f"SPACING 1 1 1\nPOINT_DATA 343\nSCALARS T double 1\nLOOKUP_TABLE default\n{values}\n")
+        for where, options in (("in what is cut away", ["--clip", "3,3.3,3,0,-1,0", "--camera", "3,1,3,3,6,3,0,0,1,60"]),
+                               ("in the body", ["--camera", "3,3.5,3,3,6,3,0,0,1,60"])):
+            with self.subTest(where):
+                for method in "dense", "tets":
+                    self.run_ok("render", "x.vtk", "-o", f"{method}.exr", "--size", 64, "--method", method, *options)
+                self.assertLess(self.run_ok("compare", "dense.exr", "tets.exr", "--json").json()["rmse"], .01)
+
     def refused(self, *arguments):
         done = subvol(*arguments, folder=self.folder)
         self.assertEqual((done.code, done.err.count("\n")), (2, 1), done.err)

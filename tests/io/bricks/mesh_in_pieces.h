@@ -140,6 +140,10 @@ protected:
             }
         }
         std::vector<std::string> expected_warnings = whole.warnings, warnings = split.warnings;
+        // The whole mesh has what only some pieces have with gaps, if no cells lie between; bricks do not have it.
+        for (std::string& warning : expected_warnings) {
+            if (warning.find("\"extra\"") != std::string::npos) warning = "array \"extra\" ignored: it is not in every piece";
+        }
         std::ranges::sort(expected_warnings);
         std::ranges::sort(warnings);
         EXPECT_EQ(warnings, expected_warnings) << what;
