@@ -17,12 +17,16 @@
 namespace subvol::cli {
 namespace {
 
+constexpr std::string_view kWhere = "where:";  // begins regions by a quantity
+
 /// The quantities that a command is asked for.
 std::vector<std::string> asked_quantities(const CommonOptions& options) {
     std::vector<std::string> asked = options.at_rest;
     if (options.field) asked.push_back(*options.field);
     if (options.density) asked.push_back(*options.density);
-    for (const std::string& region : options.only) asked.push_back(region.substr(region.find(':') + 1));
+    for (const std::string& region : options.only) {
+        if (region.starts_with(kWhere)) asked.push_back(region.substr(kWhere.size()));
+    }
     if (options.warp) asked.push_back(of_option("--warp", [&] { return parse_warp(*options.warp); }).field);
     return asked;
 }
@@ -104,8 +108,7 @@ Facts take_incomplete(ReadResult& read, const std::string& input, const CommonOp
     }
     mesh = only_cells(mesh, kept);
     if (const std::vector<std::string> fractions = bound_fractions(mesh); !fractions.empty())
-        facts.warn(join(fractions) + (fractions.size() == 1 ? " is a fraction: it stays" : " are fractions: they stay") +
-                   " within 0 and 1 between the points, too");
+        facts.warn(bounded_fractions_text(fractions));
     read.sets = sets_of_cells(std::move(read.sets), kept);
     read.cell_means.clear();
     read.cell_parts.clear();

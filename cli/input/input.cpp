@@ -97,7 +97,7 @@ HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, P
 
 constexpr std::string_view kBlockPrefix = "block:";
 
-/// Takes the field of that name out of a step, with its gaps, if it has some there; nothing if the step has no such field.
+/// The field of that name in a step, with its gaps, if it has some there; nothing if the step has no such field.
 std::optional<Attribute> field_of_step(const ReadResult& step, const std::string& name) {
     const auto with_gaps = std::ranges::find(step.incomplete, name, &Attribute::name);
     if (with_gaps != step.incomplete.end()) return *with_gaps;
@@ -144,7 +144,10 @@ void put_gaps_between(ReadResult& before, ReadResult& after, double part) {
             if (!range) range = {value, value};
             range = {std::min((*range)[0], value), std::max((*range)[1], value)};
         }
-        if (!range) continue;
+        if (!range) {  // nowhere in both steps
+            before.fields.erase(info);
+            continue;
+        }
         info->min = (*range)[0];
         info->max = (*range)[1];
     }

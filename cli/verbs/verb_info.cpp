@@ -78,6 +78,8 @@ public:
             describe_devices_alone(report);
             return 0;
         }
+        if (ignored_)
+            refuse_options(app(), {"--list-fields", "--folds", "--limit", "--scheme", "--gl"}, "has no effect with --ignored");
         InfoRequest request{.app = app(),
                             .common = common(),
                             .input = input_,

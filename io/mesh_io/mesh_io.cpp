@@ -421,9 +421,7 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         if (meets) take_patch_values(result, resolved.patch_values);
     }
     if (const auto fractions = bound_fractions(result.mesh, result.cell_means); !fractions.empty()) {
-        result.warnings.push_back(listed(fractions) +
-                                  (fractions.size() == 1 ? " is a fraction: it stays" : " are fractions: they stay") +
-                                  " within 0 and 1 between the points, too");
+        result.warnings.push_back(bounded_fractions_text(fractions));
     }
     if (format.times) {
         const std::vector<double> times = format.times(path);

@@ -247,6 +247,8 @@ class BlocksInTimeAndWeldedTest(InFolder):
         done = subvol("probe", "ac.pvd", "--stats", "--field", "T", *map(str, time), folder=self.folder)
         self.assertEqual(done.code, 2)  # no cell has it in both steps
         self.assertIn("no cell has 'T'", done.err)
+        found = [f["name"] for f in self.run_ok("info", "ac.pvd", *time, "--json").json()["fields"]]
+        self.assertEqual(found, ["h"])
 
     def test_a_list_of_one_step_has_its_time(self):
         self.write("a", [(0, {"T": lambda x, y, z: x}, "")])
@@ -287,6 +289,9 @@ class BlocksInTimeAndWeldedTest(InFolder):
     def test_regions_of_such_fields(self):
         self.write("a", [(0, {"T": lambda x, y, z: 1, "h": lambda x, y, z: z}, ""), (1, {"h": lambda x, y, z: z}, "")])
         self.assertEqual(self.mean("a.vtm", "h", "--only", "where:T>.5"), (1, .5))
+        # A block and a field of one name: the block is not asked for the field.
+        self.write("b", [(0, {"block1": lambda x, y, z: 1, "h": lambda x, y, z: z}, ""), (1, {"h": lambda x, y, z: z}, "")])
+        self.assertEqual(self.mean("b.vtm", "h", "--only", "block:block1"), (1, .5))
 
 
 class MissingStepsTest(InFolder):

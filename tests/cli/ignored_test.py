@@ -135,6 +135,10 @@ class Ignored(InFolder):
         self.assertEqual(done.code, 2)
         self.assertIn("--ignored", done.err)
         self.assertEqual(subvol("info", "--gl", "--ignored", folder=self.folder).code, 2)
+        for other in ["--folds"], ["--limit"], ["--list-fields"], ["--gl"], ["--scheme", "tetoct"]:
+            done = subvol("info", "a.mesh", "--ignored", *other, folder=self.folder)
+            self.assertEqual(done.code, 2, other)
+            self.assertIn(f"{other[0]}: has no effect with --ignored", done.err)
 
 
 if __name__ == "__main__":

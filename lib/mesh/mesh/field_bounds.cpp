@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/field_bounds.h"
+#include "subvol/detail/error_text.h"
 
 #include <algorithm>
 #include <array>
@@ -62,6 +63,11 @@ std::vector<std::string> bound_fractions(HexMesh& mesh, std::span<const Attribut
         if (!is_finite(before)) bounded.push_back(field.name);
     }
     return bounded;
+}
+
+std::string bounded_fractions_text(std::span<const std::string> names) {
+    return detail::listed(names) + (names.size() == 1 ? " is a fraction: it stays" : " are fractions: they stay") +
+           " within 0 and 1 between the points, too";
 }
 
 }  // namespace subvol

@@ -21,5 +21,7 @@ void bound_as_given(HexMesh& mesh, std::span<const Attribute> at_cells = {});
 /// at_cells: as for `bound_as_given`
 /// returns:  the names of the fields that are bounded now and were not before
 std::vector<std::string> bound_fractions(HexMesh& mesh, std::span<const Attribute> at_cells = {});
+/// The sentence about these fields, of which there is at least one.
+[[nodiscard]] std::string bounded_fractions_text(std::span<const std::string> names);
 
 }  // namespace subvol
