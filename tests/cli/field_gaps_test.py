@@ -247,8 +247,8 @@ class BlocksInTimeAndWeldedTest(InFolder):
         done = subvol("probe", "ac.pvd", "--stats", "--field", "T", *map(str, time), folder=self.folder)
         self.assertEqual(done.code, 2)  # no cell has it in both steps
         self.assertIn("no cell has 'T'", done.err)
-        found = [f["name"] for f in self.run_ok("info", "ac.pvd", *time, "--json").json()["fields"]]
-        self.assertEqual(found, ["h"])
+        found = {f["name"]: (f["min"], f["max"], f.get("missing")) for f in self.run_ok("info", "ac.pvd", *time, "--json").json()["fields"]}
+        self.assertEqual(found, {"T": (1, 1, 8), "h": (0, 1, None)})  # T where the blocks touch, W nowhere
 
     def test_a_list_of_one_step_has_its_time(self):
         self.write("a", [(0, {"T": lambda x, y, z: x}, "")])
