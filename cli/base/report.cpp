@@ -194,8 +194,8 @@ void Report::end_series() {
     series_ = false;
     if (repeated_ == 0) return;
     progress_.clear();
-    std::cerr << "subvol: note: " << counted(repeated_, "more warning") << " of other steps "
-              << (repeated_ == 1 ? "differs" : "differ") << " from these in numbers alone; --json has all\n";
+    std::cerr << "subvol: note: " << counted(repeated_, "more warning") << " " << (repeated_ == 1 ? "differs" : "differ")
+              << " from these in numbers alone; --json has all\n";
     repeated_ = 0;
 }
 

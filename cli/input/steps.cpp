@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include "input.h"
 #include "subvol/detail/number_text.h"
@@ -109,17 +110,21 @@ WithFacts<CommonOptions> for_steps(const std::string& input, const CommonOptions
     return result;
 }
 
-void StepsWithFields::finish() {
+void StepsWithFields::refuse_none() const {
+    if (!any_ && why_) throw Error(*why_);
+}
+
+void StepsWithFields::finish(std::string_view outcome) {
     report_.end_series();
+    refuse_none();
     if (lacking_.empty()) return;
-    if (!any_) throw Error(*why_);
     std::string list;
-    for (std::size_t k = 0; k < lacking_.size(); ++k) {
-        const std::size_t first = k;
-        while (k + 1 < lacking_.size() && lacking_[k + 1] == lacking_[k] + 1) ++k;
-        list += text(first == 0 ? "" : ", ", lacking_[first], first == k ? "" : text(" to ", lacking_[k]));
+    for (auto step = lacking_.begin(); step != lacking_.end(); ++step) {
+        const int first = *step;
+        while (std::next(step) != lacking_.end() && *std::next(step) == *step + 1) ++step;
+        list += text(list.empty() ? "" : ", ", first, first == *step ? "" : text(" to ", *step));
     }
-    report_.warn(text(lacking_.size() == 1 ? "step " : "steps ", list, " left out: ", why_->what()));
+    report_.warn(text(lacking_.size() == 1 ? "step " : "steps ", list, " ", outcome, ": ", why_->what()));
 }
 
 std::optional<BetweenSteps> between_steps(const std::string& input, const CommonOptions& options) {

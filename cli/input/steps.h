@@ -2,8 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "common_options.h"
 #include "field_gaps.h"
@@ -56,20 +57,22 @@ public:
             call();
         } catch (const NoSuchField& error) {
             if (lacking_.empty()) why_ = error;
-            lacking_.push_back(step);
+            lacking_.insert(step);
             return false;
         }
         any_ = true;
         return true;
     }
-    /// After the last step: warns of those that were left out.
+    /// After the last step: warns of those that lack the fields. outcome: what became of them
     ///
-    /// throws: Error(InvalidInput) as the first of them, if no step was taken
-    void finish();
+    /// throws: as `refuse_none`
+    void finish(std::string_view outcome = "left out");
+    /// throws: Error(InvalidInput) as the first step, if all steps so far lack the fields
+    void refuse_none() const;
 
 private:
     Report& report_;
-    std::vector<int> lacking_;
+    std::set<int> lacking_;
     std::optional<Error> why_;  // of the first of them
     bool any_ = false;
 };

@@ -185,12 +185,23 @@ private:
         const FrameRange range = chosen_steps(series, common());
         const CommonOptions all = report.unpack(for_steps(input_, common(), range, report.progress()));
         const auto first = series.times.begin() + range.first;
+        StepsWithFields steps(report);
+        const auto read_step = [&](std::size_t k) {
+            const int step = range.first + static_cast<int>(k);
+            CommonOptions one = of_step(all, step);
+            HexMesh mesh;
+            if (!steps.take(step, [&] { mesh = read(one); })) {  // it stays, without the field
+                if (step == range.last) steps.refuse_none();
+                one.field.reset();
+                one.density.reset();
+                mesh = read(one);
+                mesh.attributes.clear();
+            }
+            return mesh;
+        };
         report.merge(
-            write_series_reported(output_,
-                                  {{first, first + range.count()},
-                                   [&](std::size_t k) { return read(of_step(all, range.first + static_cast<int>(k))); },
-                                   [&] { return sets; }},
-                                  options));
+            write_series_reported(output_, {{first, first + range.count()}, read_step, [&] { return sets; }}, options));
+        steps.finish("written without the field");
         return 0;
     }
 

@@ -138,7 +138,12 @@ std::vector<Patch> patches_of_mesh(const HexMesh& mesh, const MeshFile& found, c
     }
     LeftOut left_out;
     for (std::size_t k = 0; k < result.size(); ++k) {
-        if (result[k].sides.empty() && inside[k]) left_out.add(result[k].name, "its faces lie between cells");
+        if (!result[k].sides.empty()) continue;
+        if (inside[k]) {
+            left_out.add(result[k].name, "its faces lie between cells");
+        } else {
+            read.ignored.push_back({"patch", result[k].name, 1, "no side of a cell belongs to it"});
+        }
     }
     left_out.report("patch", "patches", read.warnings, read.ignored);
     std::erase_if(result, [](const Patch& patch) { return patch.sides.empty(); });
@@ -194,7 +199,7 @@ std::vector<NodeSet> node_sets_of_mesh(const HexMesh& mesh, const MeshFile& foun
         for (const Index c : cells) of_mesh.cells.push_back({c, std::exchange(corners[c], std::uint8_t{0})});
         cells.clear();
         if (of_mesh.cells.empty()) {
-            left_out.add(set.name, "no cell has a node of it");
+            left_out.add(set.name, "no node of it is a corner of a cell");
         } else {
             result.push_back(std::move(of_mesh));
         }
@@ -225,7 +230,11 @@ FileSetsOfMesh sets_of_mesh(const HexMesh& mesh, const MeshFile& found, std::spa
         }
         std::ranges::sort(of_mesh.cells);
         of_mesh.cells.erase(std::unique(of_mesh.cells.begin(), of_mesh.cells.end()), of_mesh.cells.end());
-        if (!of_mesh.cells.empty()) sets.sets.push_back(std::move(of_mesh));
+        if (of_mesh.cells.empty()) {
+            read.ignored.push_back({"set", set.name, 1, "no cell belongs to it"});
+        } else {
+            sets.sets.push_back(std::move(of_mesh));
+        }
     }
     return result;
 }

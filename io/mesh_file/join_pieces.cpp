@@ -61,8 +61,27 @@ std::string joining_report(std::size_t parts, std::string_view word, std::size_t
            " joined with those of another, by " + by + (order_by.empty() ? "" : "; cells in the order of " + order_by);
 }
 
+GapLimit::GapLimit(std::size_t values) {
+    constexpr std::size_t kFewGaps = 1 << 20,
+                          kGapsOfValue = 8;  // many parts with an array each would be many arrays of the whole
+    room_ = kFewGaps + kGapsOfValue * values;
+}
+
+bool GapLimit::allows(std::string_view name, std::size_t values) {
+    if (std::ranges::find(kPointNumberArrays, name) != kPointNumberArrays.end() ||
+        std::ranges::find(kCellNumberArrays, name) != kCellNumberArrays.end() || values > room_)
+        return false;
+    room_ -= values;
+    return true;
+}
+
 IgnoredPart not_everywhere(const std::string& name, std::string_view word) {
     return {"array", name, 1, "it is not in every " + std::string(word)};
+}
+
+IgnoredPart other_components(const std::string& name, std::size_t arrays, std::string_view word) {
+    return {"array", name, arrays,
+            "it has other numbers of components than in the first " + std::string(word) + " that has it"};
 }
 
 std::string does_not_number(std::string_view name, std::string_view things) {
@@ -363,34 +382,27 @@ private:
                 if (!has_one && array.components == of_name.first->components) of_name.of_pieces.emplace_back(k, &array);
             }
         }
-        // Many pieces with an array each would be many arrays of all pieces.
-        constexpr std::size_t kFewGaps = 1 << 20, kGapsOfValue = 8;
-        std::size_t values = 0, with_gaps = 0;
+        std::size_t values = 0;
         for (const MeshFile& piece : pieces_) {
             for (const FileArray& array : piece.arrays) values += array.values.size();
         }
+        GapLimit gaps(values);
         for (const auto& [first, of_pieces, others] : named) {
-            if (others > 0)
-                all_.ignore({"array", first->name, others,
-                             "it has other numbers of components than in the first " + std::string(word_) + " that has it"});
+            if (others > 0) all_.ignore(other_components(first->name, others, word_));
             std::vector<const FileArray*> parts(pieces_.size(), nullptr);
             for (const auto& [piece, array] : of_pieces) parts[piece] = array;
             if (first->name == kGhostArray || of_pieces.size() == pieces_.size()) {  // where there are no ghosts, it may lack
                 all_.arrays.push_back(joined(*first, parts, 0));
                 continue;
             }
-            with_gaps += (first->at_cells ? cells_ : all_.points.size()) * static_cast<std::size_t>(first->components);
-            if (numbers_things(first->name) || with_gaps > kFewGaps + kGapsOfValue * values) {
-                all_.ignore(not_everywhere(first->name, word_));
-            } else {
+            const std::size_t with_gaps =
+                (first->at_cells ? cells_ : all_.points.size()) * static_cast<std::size_t>(first->components);
+            if (gaps.allows(first->name, with_gaps)) {
                 add_with_gaps(*first, parts);
+            } else {
+                all_.ignore(not_everywhere(first->name, word_));
             }
         }
-    }
-
-    [[nodiscard]] static bool numbers_things(std::string_view name) {
-        return std::ranges::find(kPointNumberArrays, name) != kPointNumberArrays.end() ||
-               std::ranges::find(kCellNumberArrays, name) != kCellNumberArrays.end();
     }
 
     // An array that some pieces lack has no value there. At points where pieces touch it has that of the piece that has it, so

@@ -34,8 +34,23 @@ inline constexpr std::array<std::string_view, 3> kCellNumberArrays{"GlobalCellId
 [[nodiscard]] std::string joining_report(std::size_t parts, std::string_view word, std::size_t joined, const std::string& by,
                                          const std::string& order_by);
 
-/// What is said of an array that is not in every part, and of one that should number things and does not. things: "points"
+/// Which of the arrays that some parts lack are kept, with gaps: those that number nothing, as long as their values are not
+/// many more than the file has.
+class GapLimit {
+public:
+    /// values: of all arrays of all parts
+    explicit GapLimit(std::size_t values);
+    /// values: those that the array has with its gaps
+    [[nodiscard]] bool allows(std::string_view name, std::size_t values);
+
+private:
+    std::size_t room_;
+};
+
+/// What is said of an array that is not in every part, of others of its name with other components, and of one that should
+/// number things and does not. things: "points"
 [[nodiscard]] IgnoredPart not_everywhere(const std::string& name, std::string_view word);
+[[nodiscard]] IgnoredPart other_components(const std::string& name, std::size_t arrays, std::string_view word);
 [[nodiscard]] std::string does_not_number(std::string_view name, std::string_view things);
 
 /// Puts the parts of a mesh together, one after the other, and joins their points: those with the same number in an array

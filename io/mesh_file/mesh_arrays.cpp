@@ -217,6 +217,10 @@ void add_to_set(ByName<FileSet>& sets, std::string_view array, std::size_t first
     }
 }
 
+bool is_node_set_array(std::string_view name, std::size_t components) {
+    return components == 1 && is_named(name, kNodesArray);
+}
+
 std::string node_array_name(const NodeSet& set) {
     return std::string(kNodesArray) + set.name;
 }
@@ -229,7 +233,7 @@ std::vector<std::uint8_t> flags_of(const HexMesh& mesh, const NodeSet& set, std:
 
 void take_node_set_arrays(MeshFile& found) {
     const auto is_set = [](const FileArray& array) {
-        return !array.at_cells && array.components == 1 && is_named(array.name, kNodesArray);
+        return !array.at_cells && is_node_set_array(array.name, static_cast<std::size_t>(array.components));
     };
     ByName<FileSet> sets(found.node_sets);
     for (const FileArray& array : found.arrays) {

@@ -68,6 +68,9 @@ void ignore_field_arrays(std::span<const std::string> names, MeshFile& found);
 /// array: the name of the array; first: the number of the first value's cell
 void add_to_set(ByName<FileSet>& sets, std::string_view array, std::size_t first, std::span<const double> values);
 
+/// Whether an array at points is a set of nodes, as `is_set_array`.
+[[nodiscard]] bool is_node_set_array(std::string_view name, std::size_t components);
+
 /// The name of the array at points that has 1 at those of a set of nodes; and these numbers.
 [[nodiscard]] std::string node_array_name(const NodeSet& set);
 [[nodiscard]] std::vector<std::uint8_t> flags_of(const HexMesh& mesh, const NodeSet& set, std::size_t points);

@@ -294,6 +294,48 @@ class BlocksInTimeAndWeldedTest(InFolder):
         self.assertEqual(self.mean("b.vtm", "h", "--only", "block:block1"), (1, .5))
 
 
+class PiecesOfOneFileTest(InFolder):
+    """Cubes beside each other as pieces of one .vtu, which have other fields."""
+
+    def write(self, *cubes):
+        pieces = []
+        for k, (fields, at_cells) in enumerate(cubes):
+            text = cube_file(k, {"h": lambda x, y, z: z, **fields}, at_cells)
+            pieces.append(text[text.index("<Piece"):text.index("</UnstructuredGrid>")])
+        (self.folder / "a.vtu").write_text('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"><UnstructuredGrid>'
+                                           + "".join(pieces) + "</UnstructuredGrid></VTKFile>")
+
+    def stats(self, field, *more):
+        done = self.run_ok("probe", "a.vtu", "--stats", "--field", field, "--scheme", "linear", "--json", *more).json()
+        whole = done["stats"]["whole"]
+        return done.get("cells_with_field"), round(whole["volume"], 9), round(whole["fields"][0]["mean"], 9)
+
+    def test_each_field_is_that_of_its_piece(self):
+        T, U = {"T": lambda x, y, z: x}, {"U": lambda x, y, z: 2 * x + z}
+        self.write((T, "W"), (U, ""), (T, ""))
+        found = {f["name"]: (f["min"], f["max"], f.get("missing")) for f in self.run_ok("info", "a.vtu", "--json").json()["fields"]}
+        self.assertEqual(found, {"h": (0, 1, None), "T": (0, 3, 8), "W": (5, 5, 2), "U": (2, 5, 16)})
+        self.assertEqual(self.stats("T"), (2, 2, 1.5))
+        self.assertEqual(self.stats("U"), (1, 1, 3.5))
+        self.assertEqual(self.stats("W"), (1, 1, 5))
+        self.assertEqual(self.stats("h"), (None, 3, .5))
+
+    def test_welding_joins_what_is_there(self):
+        self.write(({"T": lambda x, y, z: x}, ""), ({}, ""), ({}, ""))
+        self.assertEqual(self.stats("T", "--weld"), (1, 1, .5))
+        self.write(({"T": lambda x, y, z: x}, ""), ({}, ""), ({"T": lambda x, y, z: x}, ""))
+        done = subvol("probe", "a.vtu", "--stats", "--field", "T", "--weld", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn('array "T" ignored: cells without it lie between those that have it', self.run_ok("info", "a.vtu", "--weld").err)
+
+    def test_other_components_and_numbers_of_things_are_left_out(self):
+        self.write(({"T": lambda x, y, z: x, "GlobalNodeId": lambda x, y, z: x}, ""), ({"T": lambda x, y, z: (x, y, z)}, ""))
+        done = self.run_ok("info", "a.vtu")
+        self.assertIn('array "T" ignored: it has other numbers of components than in the first piece that has it', done.err)
+        self.assertIn('array "GlobalNodeId" ignored: it is not in every piece', done.err)
+        self.assertEqual(self.stats("T"), (1, 1, .5))
+
+
 class MissingStepsTest(InFolder):
     def setUp(self):
         super().setUp()
@@ -322,6 +364,20 @@ class MissingStepsTest(InFolder):
         done = self.run_ok("render", "a.frd", "--size", "32x32", "--field", "S", "--step", "all", "-o", "a_#.png", "--json").json()
         self.assertEqual((done["outputs"], done["frames"], done["times"]), (["a_1.png", "a_4.png"], 2, [2, 5]))
 
+    def test_a_compressed_series_keeps_the_steps_without_the_field(self):
+        words = ["compress", "a.frd", "--field", "S", "--max-error", "1e-4", "-o", "a.svw"]
+        done = self.run_ok(*words, "--step", "all")
+        self.assertIn("steps 0, 2 to 3 written without the field: ", done.err)
+        for step, time in enumerate((1, 2, 3, 4, 5)):
+            info = self.run_ok("info", "a.svw", "--step", str(step), "--json").json()
+            self.assertEqual((info["time"], [f["name"] for f in info["fields"]]), (time, ["S"] if step in (1, 4) else []))
+        mean = self.run_ok("probe", "a.svw", "--stats", "--step", "4", "--scheme", "linear", "--json").json()
+        self.assertAlmostEqual(mean["stats"]["whole"]["fields"][0]["mean"], 3, delta=1e-3)
+        (self.folder / "a.svw").unlink()
+        none = subvol(*words, "--step", "2-3", folder=self.folder)
+        self.assertEqual((none.code, list(self.folder.glob("a.svw*"))), (2, []))
+        self.assertIn("a.frd", none.err)
+
     def test_a_field_of_no_step_is_an_error(self):
         for words in (["probe", "a.frd", "--stats"], ["render", "a.frd", "-o", "a_#.png"], ["vdb", "a.frd", "-o", "a_#.vdb"],
                       ["points", "a.frd", "-o", "a_#.ply"]):
@@ -344,7 +400,7 @@ class SeriesWarningsTest(InFolder):
         done = self.run_ok(*words, "-o", "a.csv")
         warnings = [line for line in done.err.splitlines() if line.startswith("subvol: warning:")]
         self.assertEqual(len([w for w in warnings if "became values at points" in w]), 1, done.err)
-        self.assertRegex(done.err, r"\d+ more warnings of other steps differ from these in numbers alone; --json has all")
+        self.assertRegex(done.err, r"\d+ more warnings differ from these in numbers alone; --json has all")
         self.assertEqual(len([w for w in self.run_ok(*words, "--json").json()["warnings"] if "became values at points" in w]), 5)
         self.assertLessEqual(len(done.err.splitlines()), len(warnings) + 4)
 

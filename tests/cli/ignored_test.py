@@ -14,6 +14,9 @@ VTU = """<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid>
 <DataArray type="Int64" Name="offsets" format="ascii">8</DataArray><DataArray type="UInt8" Name="types" format="ascii">12</DataArray>
 </Cells><CellData><Array type="String" Name="names" format="ascii">65 0</Array></CellData></Piece></UnstructuredGrid></VTKFile>"""
 
+FIELD_DATA = """<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">2.5</DataArray>
+<DataArray type="Int64" Name="runs" NumberOfTuples="2" format="ascii">3 4</DataArray></FieldData>"""
+
 
 class Ignored(InFolder):
     def listed(self, file, *more):
@@ -111,6 +114,60 @@ class Ignored(InFolder):
 <DataItem Dimensions="3 8" Format="XML">{cells}</DataItem></Topology><Geometry GeometryType="XYZ"><DataItem Dimensions="16 3" Format="XML">{points}</DataItem></Geometry>
 <Attribute Name="whole" Center="Grid"><DataItem Dimensions="1" Format="XML">5</DataItem></Attribute></Grid></Domain></Xdmf>""")
         self.assertEqual(self.listed("a.xmf"), {("Information", "who", 1), ("array", "whole", 1)})
+
+    def test_xdmf_above_the_grid_and_beside_the_steps(self):
+        points = " ".join(f"{x} {y} {z}" for x, y, z in POINTS)
+        cells = " ".join(str(n) for cell in CELLS for n in cell)
+
+        def grid(name, time, field):
+            values = " ".join(str(p[2]) for p in POINTS)
+            return f"""<Grid Name="{name}">{f'<Time Value="{time}"/>' if time else ""}<Topology TopologyType="Hexahedron" NumberOfElements="3">
+<DataItem Dimensions="3 8" Format="XML">{cells}</DataItem></Topology><Geometry GeometryType="XYZ"><DataItem Dimensions="16 3" Format="XML">{points}</DataItem></Geometry>
+<Attribute Name="{field}" Center="Node"><DataItem Dimensions="16" Format="XML">{values}</DataItem></Attribute></Grid>"""
+
+        note = '<Information Name="{}" Value="x"/>'.format
+        self.write("a.xmf", f'<Xdmf>{note("root")}<Domain>{note("domain")}<Grid GridType="Collection" CollectionType="Spatial">{note("parts")}'
+                   f'{grid("a", "2.5", "T")}</Grid></Domain></Xdmf>')
+        self.assertEqual(self.listed("a.xmf"), {("Information", name, 1) for name in ("root", "domain", "parts")})
+        self.assertEqual(self.run_ok("info", "a.xmf", "--json").json()["times"], [2.5])
+        self.write("b.xmf", f'<Xdmf><Domain>{grid("mesh", None, "kept_out")}<Grid GridType="Collection" CollectionType="Temporal">{note("steps")}'
+                   f'{grid("a", "1", "T")}{grid("b", "3", "T")}</Grid></Domain></Xdmf>')
+        self.assertEqual(self.listed("b.xmf"), {("Information", "steps", 1), ("array", "kept_out", 1)})
+        done = self.run_ok("info", "b.xmf")
+        self.assertIn('array "kept_out" ignored: its grid is beside the steps', done.err)
+        self.assertEqual(self.run_ok("info", "b.xmf", "--json").json()["times"], [1, 3])
+
+    def test_empty_sets_and_surfaces(self):
+        text = (INP + "*ELSET, ELSET=nobody\n*ELSET, ELSET=strangers\n99\n*SURFACE, TYPE=ELEMENT, NAME=bare\n*SURFACE, TYPE=ELEMENT\n1, S1\n"
+                "*NSET, NSET=hollow\n")
+        found = self.listed(self.write("a.inp", text))
+        self.assertLessEqual({("set", "nobody", 1), ("set", "strangers", 1), ("patch", "bare", 1), ("surface", "", 1),
+                              ("set of nodes", "hollow", 1)}, found)
+        self.assertEqual(self.reasons["nobody"], "no cell belongs to it")
+
+    def test_nodes_between_corners_of_curved_cells(self):
+        from field_gaps_test import bar
+        nodes, cells = bar(True)
+        lines = ["*NODE"] + [f"{n}, " + ", ".join(f"{c:.17g}" for c in p) for n, p in enumerate(nodes, 1)] + ["*ELEMENT, TYPE=C3D20"]
+        for c, cell in enumerate(cells, 1):
+            numbers = [str(n + 1) for n in cell]
+            lines += [f"{c}, " + ", ".join(numbers[:15]) + ",", ", ".join(numbers[15:])]
+        middles = sorted({n + 1 for cell in cells for n in cell[8:]})
+        lines += ["*NSET, NSET=middles"] + [str(n) for n in middles] + ["*NSET, NSET=first", "1"]
+        self.write("a.inp", "\n".join(lines) + "\n")
+        self.assertEqual(self.listed("a.inp"), {("set of nodes", "middles", 1)})
+        self.assertEqual(self.reasons["middles"], "no node of it is a corner of a cell")
+
+    def test_lists_of_files(self):
+        for ending, root, files in (("vtm", "vtkMultiBlockDataSet", '<DataSet index="0" file="a.vtu"/>'),
+                                    ("pvtu", "PUnstructuredGrid", '<Piece Source="a.vtu"/>')):
+            for inside in True, False:  # VTK 9.1 writes field data of blocks beside the list of them, those of pieces inside
+                with self.subTest(ending, inside=inside):
+                    self.write("a.vtu", VTU.format(x=0, y=1))
+                    self.write(f"a.{ending}", f'<VTKFile type="{root}" version="1.0"><{root}>{FIELD_DATA if inside else ""}{files}</{root}>'
+                               f'{"" if inside else FIELD_DATA}</VTKFile>')
+                    self.assertEqual(self.listed(f"a.{ending}"), {("array", "names", 1), ("array", "energy", 1), ("array", "runs", 1)})
+                    self.assertEqual(self.run_ok("info", f"a.{ending}", "--json").json()["times"], [2.5])
 
     def test_frd(self):
         from field_gaps_test import frd

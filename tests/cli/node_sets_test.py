@@ -55,7 +55,7 @@ class NodeSets(InFolder):
         done = self.run_ok("info", "a.inp")
         self.assertRegex(done.out, r"nodes +by elements \(8\), ends \(8\), Every \(16\), front \(8\), left \(4\), one of it \(1\)")
         for words in ('4 sets of nodes left out ("unknown", "of unknown", "by none", ""): a.inp, line', 'there is no set "NOWHERE"',
-                      '2 sets of nodes left out ("far", "nothing"): no cell has a node of it',
+                      '2 sets of nodes left out ("far", "nothing"): no node of it is a corner of a cell',
                       "1 number in sets of nodes that no node has", 'surface "nodes" left out: a.inp, line', "it is of type NODE"):
             self.assertIn(words, done.err)
         self.assertEqual({one["name"] for one in self.run_ok("info", "a.inp", "--json").json()["sets"]}, {"all", "ends", "middle"})

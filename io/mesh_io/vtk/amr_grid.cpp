@@ -415,10 +415,8 @@ private:
             const auto [known, is_new] = known_.try_emplace(number, next);
             if (!is_new) {
                 const Index p = known->second;
-                if (l > levels_[p]) {
-                    levels_[p] = static_cast<std::uint8_t>(l);
-                    set_values(l, tuple, p);
-                }
+                set_values(l, tuple, p, l > levels_[p]);
+                levels_[p] = std::max(levels_[p], static_cast<std::uint8_t>(l));
                 return p;
             }
         }
@@ -438,12 +436,18 @@ private:
         }
     }
 
-    void set_values(std::size_t l, std::size_t tuple, Index p) {
+    // The values of the finest level stay; a point is in a set if any block says so. finer: than those that it has
+    void set_values(std::size_t l, std::size_t tuple, Index p, bool finer) {
         for (std::size_t k = 0; k < found_.arrays.size(); ++k) {
             FileArray& array = found_.arrays[k];
             if (array.at_cells) continue;
             const auto components = static_cast<std::size_t>(array.components);
-            std::copy_n(arrays_[l][k]->values.data() + tuple * components, components, array.values.data() + p * components);
+            const double* from = arrays_[l][k]->values.data() + tuple * components;
+            if (is_node_set_array(array.name, components)) {
+                array.values[p] = std::max(array.values[p], *from);
+            } else if (finer) {
+                std::copy_n(from, components, array.values.data() + p * components);
+            }
         }
     }
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "amr_grid.h"
 #include "assemble.h"
@@ -68,6 +70,7 @@ public:
         const auto open = named_.open(file_, [] { return std::string(); });
         MeshFile found = type_ == kNotOverlapping ? read_blocks() : read_boxes();
         if (found.hexes.corners.empty()) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its blocks", file_);
+        list_.remarks().add_to(found.time, found.ignored);
         return assemble(std::move(found), file_, names_in_parts(), options_);
     }
 
@@ -76,6 +79,7 @@ private:
         read_list();
         check_amr(grid_, file_);
         for (std::size_t l = 0; l < grid_.levels.size(); ++l) read_level(l);
+        complete_sets();
         MeshFile found = mesh_of_amr(grid_, file_);
         found.warnings.insert(found.warnings.end(), said_.begin(), said_.end());
         found.ignored.insert(found.ignored.end(), ignored_.begin(), ignored_.end());
@@ -134,8 +138,8 @@ private:
             cells += grid.cell_count();
             for (FileArray& array : level.arrays) {
                 const std::size_t all = (array.at_cells ? cells : points) * static_cast<std::size_t>(array.components);
-                // A block without values has no cell in the mesh, and one without ghosts has none.
-                if (block.has_values && array.values.size() != all && array.name != kGhostArray) partial.insert(array.name);
+                // A block without values has no cell in the mesh.
+                if (block.has_values && array.values.size() != all && !is_zero_where_missing(array)) partial.insert(array.name);
                 array.values.resize(all);
             }
         }
@@ -160,15 +164,20 @@ private:
     // points, cells: those of the blocks of the level before
     void take_arrays(MeshFile image, std::size_t l, std::size_t b, std::size_t points, std::size_t cells) {
         AmrLevel& level = grid_.levels[l];
+        measure(image, level, level.blocks[b].box);
         check_image(image, l, b);
-        for (const FileSet& set : image.sets) {  // arrays again, until the cells are known
+        const StructuredGrid grid = level.blocks[b].box.grid();
+        const auto add_flags = [&](const FileSet& set, std::string name,
+                                   bool at_cells) {  // arrays again, until the cells are known
             FileArray& flags = image.arrays.emplace_back();
-            flags.name = set_array_name(CellSet{set.name, {}});
-            flags.at_cells = true;
+            flags.name = std::move(name);
+            flags.at_cells = at_cells;
             flags.integers = true;
-            flags.values.assign(level.blocks[b].box.grid().cell_count(), 0);
-            for (const Index c : set.numbers) flags.values[c] = 1;
-        }
+            flags.values.assign(at_cells ? grid.cell_count() : grid.point_count(), 0);
+            for (const Index k : set.numbers) flags.values[k] = 1;
+        };
+        for (const FileSet& set : image.sets) add_flags(set, set_array_name(CellSet{set.name, {}}), true);
+        for (const FileSet& set : image.node_sets) add_flags(set, node_array_name(NodeSet{set.name, {}}), false);
         for (const std::string& warning : image.warnings) {
             if (std::ranges::find(said_, warning) == said_.end()) said_.push_back(warning);
         }
@@ -195,9 +204,43 @@ private:
                 all.components = array.components;
                 all.integers = array.integers;
                 all.values.resize(before);
-                if (array.name != kGhostArray && has_values_before(l, b)) all.values.push_back(0);  // not in every block
+                if (!is_zero_where_missing(array) && has_values_before(l, b)) all.values.push_back(0);  // not in every block
             }
             if (all.values.size() == before) all.values.insert(all.values.end(), array.values.begin(), array.values.end());
+        }
+    }
+
+    [[nodiscard]] static bool is_zero_where_missing(const FileArray& array) {
+        const auto components = static_cast<std::size_t>(array.components);
+        return array.name == kGhostArray ||
+               (array.at_cells ? is_set_array(array.name, components) : is_node_set_array(array.name, components));
+    }
+
+    // A level without a set has no cell or point of it.
+    void complete_sets() {
+        std::map<std::pair<std::string, bool>, FileArray> sets;
+        for (const AmrLevel& level : grid_.levels) {
+            for (const FileArray& array : level.arrays) {
+                if (array.name == kGhostArray || !is_zero_where_missing(array)) continue;
+                FileArray& like = sets[{array.name, array.at_cells}];
+                like = array;
+                like.values.clear();
+            }
+        }
+        for (AmrLevel& level : grid_.levels) {
+            std::size_t points = 0, cells = 0;
+            for (const AmrBlock& block : level.blocks) {
+                points += block.box.grid().point_count();
+                cells += block.box.grid().cell_count();
+            }
+            for (const auto& [name, like] : sets) {
+                const bool there = std::ranges::any_of(level.arrays, [&](const FileArray& array) {
+                    return array.name == like.name && array.at_cells == like.at_cells && array.components == 1;
+                });
+                if (there) continue;
+                level.arrays.push_back(like);
+                level.arrays.back().values.assign(like.at_cells ? cells : points, 0);
+            }
         }
     }
 
@@ -205,6 +248,24 @@ private:
         const auto& blocks = grid_.levels[l].blocks;
         return std::any_of(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(b),
                            [](const AmrBlock& block) { return block.has_values; });
+    }
+
+    // Programs write six digits of the spacings in the list, and all of them in the images.
+    void measure(const MeshFile& image, AmrLevel& level, const AmrBox& box) {
+        if (image.points.empty()) return;
+        constexpr double kSixDigits = 1e-5, kRounding = 1e-10;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto axis = static_cast<int>(a);
+            const double first = image.points.front()[axis], last = image.points.back()[axis];
+            const double spacing = (last - first) / static_cast<double>(box.high[a] - box.low[a] + 1);
+            const double origin = first - spacing * static_cast<double>(box.low[a]);
+            const double off = std::abs(spacing - level.spacing[a]);
+            if (off <= kSixDigits * spacing && off > kRounding * spacing) level.spacing[a] = spacing;
+            const double away = std::abs(origin - grid_.origin[a]);
+            if (&level == grid_.levels.data() && away > kRounding * spacing &&
+                away <= kSixDigits * std::max(spacing, std::abs(origin)))
+                grid_.origin[a] = origin;
+        }
     }
 
     // The image has to have the cells of the box, at its place.

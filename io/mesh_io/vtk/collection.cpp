@@ -130,6 +130,7 @@ Collection read_pieces_list(const std::filesystem::path& path) {
         collection.files[0].push_back(list.file(node, "Source", {}));
     }
     if (collection.files[0].empty()) list.xml().fail_at(list.xml().data_set(), "it lists no pieces");
+    collection.remarks = list.remarks();
     return collection;
 }
 
@@ -138,7 +139,18 @@ Collection read_blocks_list(const std::filesystem::path& path) {
     Collection collection{{0}, {{}}};
     add_blocks(list, list.xml().data_set(), {}, 0, collection.files[0]);
     if (collection.files[0].empty()) list.xml().fail_at(list.xml().data_set(), "it lists no blocks");
+    collection.remarks = list.remarks();
     return collection;
+}
+
+void ListRemarks::add_to(std::optional<double>& time_of_mesh, std::vector<IgnoredPart>& ignored_of_mesh) const {
+    if (time) time_of_mesh = time;
+    for (const IgnoredPart& part : ignored) {
+        const bool known = std::ranges::any_of(ignored_of_mesh, [&](const IgnoredPart& other) {
+            return other.kind == part.kind && other.name == part.name && other.reason == part.reason;
+        });
+        if (!known) ignored_of_mesh.push_back(part);
+    }
 }
 
 std::vector<double> pvd_times(const std::filesystem::path& path) {
@@ -162,7 +174,8 @@ bool is_surface(const std::filesystem::path& path) {
 // once.
 class ListExpansion {
 public:
-    explicit ListExpansion(NamedFiles& named) : named_(named) {}
+    /// remarks: gets those of all lists, of the outer ones first
+    ListExpansion(NamedFiles& named, ListRemarks& remarks) : named_(named), remarks_(remarks) {}
 
     void expand(const ListedFile& file, std::vector<ListedFile>& files) {
         const auto place = [&] { return file.place; };
@@ -175,7 +188,12 @@ public:
         if ((!blocks && !extension.starts_with(".PVT")) || is_surface(file.path)) return files.push_back(file);
         const auto open = named_.open(file.path, place);
         const auto [known, is_new] = lists_.try_emplace(file.path);
-        if (is_new) known->second = (blocks ? read_blocks_list(file.path) : read_pieces_list(file.path)).files.front();
+        if (is_new) {
+            Collection list = blocks ? read_blocks_list(file.path) : read_pieces_list(file.path);
+            known->second = std::move(list.files.front());
+            if (remarks_.time) list.remarks.time.reset();
+            list.remarks.add_to(remarks_.time, remarks_.ignored);
+        }
         for (ListedFile next : known->second) {
             if (!file.block.empty()) next.block = file.block + (next.block.empty() ? "" : "/" + next.block);
             expand(next, files);
@@ -184,6 +202,7 @@ public:
 
 private:
     NamedFiles& named_;
+    ListRemarks& remarks_;
     std::map<std::filesystem::path, std::vector<ListedFile>> lists_;
 };
 
@@ -238,21 +257,23 @@ struct StepFiles {
     std::filesystem::path list;
     std::vector<ListedFile> files;
     std::vector<std::string> warnings;
+    ListRemarks remarks;
 
     [[nodiscard]] bool is_single() const { return files.size() == 1 && files.front().block.empty(); }
 };
 
 // A step that is a single list is the last step of that one.
 StepFiles files_of_step(const std::filesystem::path& path, const ReadOptions& options, NamedFiles& named) {
-    StepFiles found{path, {}, {}};
+    StepFiles found{path, {}, {}, {}};
     ReadOptions of_list = options;
-    ListExpansion expansion(named);
+    ListExpansion expansion(named, found.remarks);
     std::vector<NamedFiles::Open> open;
     std::string place;
     for (const MeshFormat* format = &readable_format(path); format != nullptr && format->files != nullptr;) {
         open.push_back(named.open(found.list, [&] { return place; }));
         check_options(*format, found.list, of_list);
         const Collection collection = format->files(found.list);
+        collection.remarks.add_to(found.remarks.time, found.remarks.ignored);
         const std::size_t step = chosen_step(of_list, collection.times.size(), found.list.string(), found.warnings);
         found.files.clear();
         for (const ListedFile& file : collection.files[step]) expansion.expand(file, found.files);
@@ -285,6 +306,7 @@ ReadResult read_step(const std::filesystem::path& path, const ReadOptions& optio
         check_options(format, file.path, of_file);
         ReadResult result = format.read(file.path, of_file);
         result.warnings.insert(result.warnings.begin(), step.warnings.begin(), step.warnings.end());
+        step.remarks.add_to(result.mesh.time, result.ignored);
         return result;
     }
     const PartFiles chosen = chosen_files(std::move(step.files), list, options);
@@ -304,6 +326,7 @@ ReadResult read_step(const std::filesystem::path& path, const ReadOptions& optio
     merge_blocks(found.blocks);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
     found.ignored.insert(found.ignored.end(), chosen.ignored.begin(), chosen.ignored.end());
+    step.remarks.add_to(found.time, found.ignored);
     return assemble(std::move(found), list, kPieceNames, of_file);
 }
 

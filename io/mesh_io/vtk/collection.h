@@ -25,10 +25,20 @@ struct ListedFile {
 inline constexpr std::size_t kLongestBlock = 1024;
 inline constexpr const char* kBlockLimit = "at most 1024 bytes";
 
+/// What a list says of the mesh besides its files.
+struct ListRemarks {
+    std::optional<double> time;
+    std::vector<IgnoredPart> ignored;
+
+    /// Adds to a mesh what its files did not say already; the time of the list counts.
+    void add_to(std::optional<double>& time_of_mesh, std::vector<IgnoredPart>& ignored_of_mesh) const;
+};
+
 /// The steps of a collection, in the order of their times, with their files.
 struct Collection {
     std::vector<double> times;
     std::vector<std::vector<ListedFile>> files;
+    ListRemarks remarks = {};  ///< of lists of pieces and of blocks
 };
 
 /// Reads a file that lists others: .pvd, .series (ParaView's JSON), or one step of .pvtu, .pvts, .pvtr, .pvti, .vtm.

@@ -4,8 +4,8 @@
 // the indices of a piece are counted from the points and cells before it. In each come points, then cells, then arrays. The
 // list of corners is read as a stream: a cell is taken when its offset is reached, so only the corners of one cell are kept.
 //
-// An array goes on in the next piece under its name, place and components; one that is not in every piece is left out with a
-// warning. Fields of the whole file are read last. What is written has one piece:
+// An array goes on in the next piece under its name, place and components; where a piece lacks it, it has gaps. Fields of the
+// whole file are read last. What is written has one piece:
 //
 //     hexahedra, quads, lines → connectivity, offsets, types → fields at points → fields at cells → sets as flags 0 and 1
 //
@@ -13,6 +13,7 @@
 // corners where a field is at cells.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <pugixml.hpp>
@@ -21,6 +22,7 @@
 
 #include "assemble.h"
 #include "formats.h"
+#include "join_pieces.h"
 #include "mesh_arrays.h"
 #include "mesh_file.h"
 #include "subvol/detail/mesh_subset.h"
@@ -186,7 +188,7 @@ private:
         if (pieces_ > 1)
             found_.warnings.push_back(std::to_string(pieces_) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
-        drop_partial_arrays();
+        add_gaps();
         take_node_set_arrays(found_);
         // A program that adds arrays of its own may write a second list of them.
         for (const auto& element : grid.children("FieldData")) read_field_data(element);
@@ -388,34 +390,56 @@ private:
                 continue;
             }
             std::vector<double>& values =
-                values_of({name, static_cast<int>(components), at_cells, {}, {}, {}, integers}, before);
+                values_of({name, static_cast<int>(components), at_cells, {}, {}, {}, integers}, before, tuples);
             arrays_.each_real(array,
                               [&](std::span<const double> some) { values.insert(values.end(), some.begin(), some.end()); });
         }
     }
 
-    // The values of a piece follow those of the piece before. An array that an earlier piece lacks is started anew, and removed
-    // at the end.
-    std::vector<double>& values_of(FileArray array, std::size_t before) {
-        const auto components = static_cast<std::size_t>(array.components);
-        Alike& alike = alike_[{array.name, array.at_cells, components}];
+    // Where the values of a piece go: after those of the piece before, whether or not that has the array. before: tuples of the
+    // pieces before
+    std::vector<double>& values_of(FileArray array, std::size_t before, std::size_t tuples) {
+        Alike& alike = alike_[{array.name, array.at_cells, static_cast<std::size_t>(array.components)}];
         if (std::exchange(alike.piece, pieces_) != pieces_) alike.next = 0;
-        while (alike.next < alike.places.size()) {
-            std::vector<double>& values = found_.arrays[alike.places[alike.next++]].values;
-            if (values.size() == before * components) return values;
+        if (alike.next == alike.places.size()) {
+            alike.places.push_back(found_.arrays.size());
+            found_.arrays.push_back(std::move(array));
+            stretches_.emplace_back();
         }
-        alike.places.push_back(found_.arrays.size());
-        alike.next = alike.places.size();
-        return found_.arrays.emplace_back(std::move(array)).values;
+        const std::size_t place = alike.places[alike.next++];
+        stretches_[place].push_back({before, tuples});
+        return found_.arrays[place].values;
     }
 
-    void drop_partial_arrays() {
-        std::erase_if(found_.arrays, [&](const FileArray& array) {
+    // Values of arrays that are not in every piece go to their cells or points: others have none, or are no ghosts.
+    void add_gaps() {
+        std::size_t values = 0;
+        for (const FileArray& array : found_.arrays) values += array.values.size();
+        GapLimit gaps(values);
+        std::map<std::pair<std::string, bool>, int> first_components;
+        std::vector<FileArray> arrays;
+        for (std::size_t k = 0; k < found_.arrays.size(); ++k) {
+            FileArray& array = found_.arrays[k];
             const std::size_t tuples = array.at_cells ? cells_before_ : found_.points.size();
-            const bool partial = array.values.size() != tuples * static_cast<std::size_t>(array.components);
-            if (partial) found_.ignore({"array", array.name, 1, "it is not in every piece"});
-            return partial;
-        });
+            const auto components = static_cast<std::size_t>(array.components);
+            const int of_first = first_components.try_emplace({array.name, array.at_cells}, array.components).first->second;
+            if (array.values.size() != tuples * components) {
+                if (array.components != of_first || !gaps.allows(array.name, tuples * components)) {
+                    found_.ignore(array.components != of_first ? other_components(array.name, 1, "piece")
+                                                               : not_everywhere(array.name, "piece"));
+                    continue;
+                }
+                std::vector<double> whole(tuples * components, array.name == kGhostArray ? 0 : std::nan(""));
+                const double* from = array.values.data();
+                for (const auto& [begin, count] : stretches_[k]) {
+                    std::copy_n(from, count * components, whole.data() + begin * components);
+                    from += count * components;
+                }
+                array.values = std::move(whole);
+            }
+            arrays.push_back(std::move(array));
+        }
+        found_.arrays = std::move(arrays);
     }
 
     std::string_view file_;
@@ -433,6 +457,10 @@ private:
         std::size_t next = 0, piece = 0;
     };
     std::map<std::tuple<std::string, bool, std::size_t>, Alike> alike_;
+    struct Stretch {
+        std::size_t begin, tuples;
+    };
+    std::vector<std::vector<Stretch>> stretches_;  // the tuples of each array that pieces have
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "collection.h"
+#include "mesh_arrays.h"
 #include "subvol/detail/named_files.h"
 #include "subvol/detail/read_file.h"
 #include "subvol/detail/text_scanner.h"
@@ -31,6 +32,27 @@ public:
         std::string place = place_of(node);
         auto path = named_file(path_.parent_path(), as_utf8(node.attribute(attribute).as_string()), [&] { return place; });
         return {std::move(path), std::move(block), std::move(place)};
+    }
+
+    /// What its field data say, of which nothing belongs to points or cells of a single file.
+    [[nodiscard]] ListRemarks remarks() const {
+        ListRemarks remarks;
+        for (const pugi::xml_node& parent : {xml_.data_set(), xml_.data_set().parent()}) {  // VTK 9.1 writes both
+            for (const auto& element : parent.children("FieldData")) {
+                for (const auto& array : element.children()) {
+                    const std::string name = as_utf8(array.attribute("Name").as_string());
+                    MeshFile of_array;
+                    if (is_time_array(name) && xml_.arrays().size(array) == 1)
+                        xml_.arrays().each_real(array, [&](auto values) { take_time(name, values, of_array); });
+                    if (of_array.time) {
+                        remarks.time = of_array.time;
+                    } else {
+                        remarks.ignored.push_back({"array", name, 1, "it is at no points or cells"});
+                    }
+                }
+            }
+        }
+        return remarks;
     }
 
     /// The file and the line of an element. Elements come in the order of the text: each line is counted once.

@@ -36,6 +36,7 @@ constexpr std::size_t kMostGrids = 100000;
 struct XdmfSteps {
     std::vector<double> times;
     std::vector<pugi::xml_node> grids;
+    pugi::xml_node collection;  ///< that the steps are those of
 };
 
 bool is_temporal(const pugi::xml_node& grid) {
@@ -50,24 +51,36 @@ public:
         const auto grids = file_.children(file_.domain(), "Grid");
         if (grids.empty()) file_.fail_at(file_.domain(), "it has no grids");
         const auto temporal = std::ranges::find_if(grids, is_temporal);
-        if (temporal == grids.end()) return {{}, {file_.domain()}};
+        if (temporal == grids.end()) return {{}, {file_.domain()}, {}};
         XdmfSteps steps;
         steps.grids = file_.children(*temporal, "Grid");
         if (steps.grids.empty()) file_.fail_at(*temporal, "it has no steps");
         if (steps.grids.size() > kMostGrids) file_.fail_at(*temporal, "it has too many steps");
         const auto listed = listed_times(*temporal, steps.grids.size());
         for (std::size_t k = 0; k < steps.grids.size(); ++k) {
-            steps.times.push_back(listed.empty() ? time_of(steps.grids[k], static_cast<double>(k), 0) : listed[k]);
+            const auto time = listed.empty() ? time_of(steps.grids[k], 0) : listed[k];
+            steps.times.push_back(time.value_or(static_cast<double>(k)));
         }
         std::vector<std::size_t> order(steps.times.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::ranges::stable_sort(order, {}, [&](std::size_t k) { return steps.times[k]; });
-        XdmfSteps sorted;
+        XdmfSteps sorted{{}, {}, *temporal};
         for (const std::size_t k : order) {
             sorted.times.push_back(steps.times[k]);
             sorted.grids.push_back(steps.grids[k]);
         }
         return sorted;
+    }
+
+    // The time of a grid, or of the first one in it.
+    std::optional<double> time_of(const pugi::xml_node& grid, int depth) {
+        if (const pugi::xml_node time = file_.child(grid, "Time"); time.attribute("Value")) {
+            const auto value = number_from(trimmed(time.attribute("Value").as_string()));
+            if (!value || !std::isfinite(*value)) file_.fail_at(time, "its value is not a number");
+            return value;
+        }
+        const pugi::xml_node first = file_.child(grid, "Grid");
+        return first && depth < kMostNestedGrids ? time_of(first, depth + 1) : std::nullopt;
     }
 
 private:
@@ -86,17 +99,6 @@ private:
             file_.fail_at(time, "it does not give a time for each of the " + counted(count, "step", "steps"));
         }
         return values;
-    }
-
-    double time_of(const pugi::xml_node& grid, double otherwise, int depth) {
-        if (const pugi::xml_node time = file_.child(grid, "Time")) {
-            const auto text = time.attribute("Value");
-            const auto value = text ? number_from(trimmed(text.as_string())) : otherwise;
-            if (!value || !std::isfinite(*value)) file_.fail_at(time, "its value is not a number");
-            return *value;
-        }
-        const pugi::xml_node first = file_.child(grid, "Grid");
-        return first && depth < kMostNestedGrids ? time_of(first, otherwise, depth + 1) : otherwise;
     }
 
     XdmfFile& file_;
@@ -182,6 +184,10 @@ public:
         if (parts.empty()) file_.fail_at(grid, "it has no grids with points");
         MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "grid", file_.name());
         found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+        if (steps.times.empty()) found.time = StepFinder(file_).time_of(grid, 0);
+        for (const pugi::xml_node& above : {file_.domain().parent(), file_.domain(), steps.collection}) ignore_notes(above);
+        if (steps.collection) ignore_beside(steps.collection, found);
+        found.ignored.insert(found.ignored.end(), ignored_.begin(), ignored_.end());
         add_left_out_warning(found, {}, file_.name());
         return assemble(std::move(found), file_.name(), kVtkNames, options_);
     }
@@ -191,10 +197,29 @@ private:
         if (depth > kMostNestedGrids) file_.fail_at(grid, "grids are nested too deeply");
         if (parts.size() > kMostGrids) file_.fail_at(grid, "there are too many grids");
         if (is_collection(grid)) {
+            ignore_notes(grid);
             for (const auto& child : file_.children(grid, "Grid")) add(child, depth + 1, parts);
             return;
         }
         parts.push_back(read_grid(grid));
+    }
+
+    void ignore_notes(const pugi::xml_node& element) {
+        for (const char* kind : {"Set", "Information"}) {
+            for (const auto& note : file_.children(element, kind))
+                ignored_.push_back({kind, as_utf8(note.attribute("Name").as_string())});
+        }
+    }
+
+    // Steps may have the cells of a grid beside them, but its arrays are those of no step.
+    void ignore_beside(const pugi::xml_node& steps, MeshFile& found) const {
+        for (const auto& grid : file_.children(file_.domain(), "Grid")) {
+            if (grid == steps) continue;
+            if (is_collection(grid))
+                found.ignore({"grid", as_utf8(grid.attribute("Name").as_string()), 1, "it is beside the steps"});
+            for (const auto& attribute : file_.children(grid, "Attribute"))
+                found.ignore({"array", as_utf8(attribute.attribute("Name").as_string()), 1, "its grid is beside the steps"});
+        }
     }
 
     // A step without cells or points has those of the first one.
@@ -385,10 +410,7 @@ private:
 
     // An array that cannot be read stops no other, and the file only if there is no other.
     void read_arrays(const pugi::xml_node& grid, MeshFile& found) {
-        for (const char* kind : {"Set", "Information"}) {
-            for (const auto& element : file_.children(grid, kind))
-                found.ignored.push_back({kind, as_utf8(element.attribute("Name").as_string())});
-        }
+        ignore_notes(grid);
         constexpr std::size_t kMostUnread = 1000;
         std::optional<Error> first;
         for (const auto& attribute : file_.children(grid, "Attribute")) {
@@ -438,7 +460,8 @@ private:
     ReadOptions options_;
     TextScanner in_;
     pugi::xml_node first_;
-    std::size_t cells_ = 0;  // of the grid
+    std::vector<IgnoredPart> ignored_;  // notes of all elements
+    std::size_t cells_ = 0;             // of the grid
 };
 
 }  // namespace

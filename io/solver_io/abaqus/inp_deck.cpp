@@ -320,7 +320,10 @@ private:
             deck_.surfaces_left_out.add(values_["NAME"], in_->place_of(position_) + ": " + why);
             return;
         }
-        if (values_["NAME"].empty()) return;
+        if (values_["NAME"].empty()) {
+            deck_.surfaces_left_out.add({}, in_->place_of(position_) + ": it has no name");
+            return;
+        }
         section_ = Section::Surface;
         deck_.surfaces.push_back({values_["NAME"], part_, {}});
     }

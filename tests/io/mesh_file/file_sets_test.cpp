@@ -316,8 +316,9 @@ TEST(FileSets, PointsBetweenNodesOfASetBelongToIt) {
         const ReadResult result = assembled(file);
         const HexMesh& mesh = result.mesh;
         ASSERT_EQ(result.sets.nodes.size(), 3U);
-        EXPECT_THAT(result.warnings,
-                    Contains(HasSubstr("2 sets of nodes left out (\"loose\", \"empty\"): no cell has a node of it")));
+        EXPECT_THAT(
+            result.warnings,
+            Contains(HasSubstr("2 sets of nodes left out (\"loose\", \"empty\"): no node of it is a corner of a cell")));
         validate(result.sets, mesh);
         EXPECT_EQ(points_of(mesh, result.sets.nodes[0]), points_where(mesh, on_floor));
         EXPECT_EQ(points_of(mesh, result.sets.nodes[1]), points_where(mesh, on_edge));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "mesh_files.h"
 #include "mesh_texts.h"
@@ -37,7 +38,8 @@ struct Level {
 class Amr : public MeshFiles {
 protected:
     Vec3 origin_{0, 0, 0};
-    std::string ghosts_;  // an array of ghosts of the first block
+    std::string ghosts_;          // an array of ghosts of the first block
+    std::vector<Box> low_sides_;  // the box whose points on its low side along x are a set of nodes
 
     // The image of a box, as VTK writes it: from its own origin. The field is at points and, at the centres, at cells.
     [[nodiscard]] std::string image(const Level& level, const Box& box, const std::string& more = "") const {
@@ -60,8 +62,13 @@ protected:
             }
             return numbers;
         };
-        return text + "<PointData>" + array_text("p", values(0, 1)) + "</PointData><CellData>" +
-               array_text("c", values(.5, 0)) + more + "</CellData></Piece></ImageData></VTKFile>";
+        std::string low_side;
+        for (int k = 0; k < (box[3] - box[2] + 2) * (box[5] - box[4] + 2); ++k) {
+            for (int i = box[0]; i <= box[1] + 1; ++i) low_side += i == box[0] ? "1 " : "0 ";
+        }
+        const bool marked = !low_sides_.empty() && box == low_sides_[0];
+        return text + "<PointData>" + array_text("p", values(0, 1)) + (marked ? array_text("nodes:low", low_side) : "") +
+               "</PointData><CellData>" + array_text("c", values(.5, 0)) + more + "</CellData></Piece></ImageData></VTKFile>";
     }
 
     [[nodiscard]] static std::string box_text(const Box& box) {
@@ -126,6 +133,39 @@ protected:
         EXPECT_NEAR(integral, volume * linear(.5 * (low + high)), 1e-10 * volume);  // of a linear field: that at the middle
     }
 };
+
+TEST_F(Amr, ASetOfNodesOfSomeBlocksIsOneOfTheMesh) {
+    // Of the 5² points of the coarse side, the one in its middle is within the divided cells.
+    const Box coarse{2, 3, 0, 3, 0, 3}, fine{2, 5, 2, 5, 2, 5};
+    for (const Box& box : {coarse, fine}) {
+        low_sides_ = {box};
+        const ReadResult result = amr(two_levels());
+        ASSERT_EQ(result.sets.nodes.size(), 1U);
+        EXPECT_EQ(result.sets.nodes[0].name, "low");
+        std::set<Index> points;
+        for (const auto& [cell, corners] : result.sets.nodes[0].cells) {
+            for (std::size_t k = 0; k < 8; ++k) {
+                if ((corners >> k & 1) != 0) points.insert(result.mesh.cells[cell][k]);
+            }
+        }
+        EXPECT_EQ(points.size(), box == coarse ? 25U - 1 : 25U);
+        for (const Index p : points) EXPECT_EQ(result.mesh.points[p].x, box == coarse ? 2 : 1);
+    }
+}
+
+TEST_F(Amr, SpacingsOfSixDigitsAreThoseOfTheImages) {
+    origin_ = {1. / 3, 0, -1. / 7};
+    const std::vector<Level> levels{{1. / 3, {{0, 3, 0, 3, 0, 3}, {4, 399, 0, 3, 0, 3}}}, {1. / 6, {{2, 5, 2, 5, 2, 5}}}};
+    std::string text = list(levels);
+    const auto shorten = [&](const std::string& from, const std::string& to) {
+        for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from)) text.replace(at, from.size(), to);
+    };
+    shorten(number(1. / 3), "0.333333");
+    shorten(number(1. / 6), "0.166667");
+    shorten(number(-1. / 7), "-0.142857");
+    const ReadResult result = read("a.vth", text, {.cell_values = CellValues::Constant});
+    expect_linear(result, origin_, origin_ + 1. / 3 * Vec3(400, 4, 4));
+}
 
 TEST_F(Amr, TheFinestCellsAreTheMesh) {
     const ReadResult result = amr(two_levels(), {.cell_values = CellValues::Constant});

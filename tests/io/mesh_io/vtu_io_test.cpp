@@ -179,7 +179,7 @@ TEST_F(VtuIo, PiecesFollowEachOther) {
     EXPECT_EQ(result.mesh.find_attribute("c")->values[0], 1);
     EXPECT_EQ(result.mesh.find_attribute("c")->values[19], 2);
     EXPECT_THAT(result.warnings,
-                ElementsAre(HasSubstr("3 pieces put together"), HasSubstr("\"only here\" ignored: it is not in every piece"),
+                ElementsAre(HasSubstr("3 pieces put together"), HasSubstr("\"only here\" has no value at 1 of 3 cells"),
                             HasSubstr("cell array \"c\"")));
 }
 
