@@ -260,18 +260,18 @@ std::vector<Mat3> jacobians(const PartForm& form, CsrMatrix AxisForm::*rows, con
 
 }  // namespace
 
-Vec3 GridPart::extent() const {
+Vec3 GridPart::size() const {
     Box box;
     for (const Vec3& x : points_) box.add(x);
     return box.size();
 }
 
 PartJacobians GridPart::corners() const {
-    return {jacobians(part_form(type_), &AxisForm::corners, points_), extent()};
+    return {jacobians(part_form(type_), &AxisForm::corners, points_), size()};
 }
 
 PartJacobians GridPart::corners_of_children() const {
-    return {jacobians(part_form(type_), &AxisForm::places, points_), extent()};
+    return {jacobians(part_form(type_), &AxisForm::places, points_), size()};
 }
 
 Mat3 GridPart::center() const {

@@ -39,6 +39,8 @@ public:
     /// The Jacobians at the corners, and at the corners of all children (PartFrame).
     [[nodiscard]] PartJacobians corners() const;
     [[nodiscard]] PartJacobians corners_of_children() const;
+    /// No differences of neighbouring points are larger in a component.
+    [[nodiscard]] Vec3 size() const;
     /// The polynomials' Jacobian in the middle.
     [[nodiscard]] Mat3 center() const;
     /// In coordinates y = H x.
@@ -47,7 +49,6 @@ public:
 
 private:
     void put_in_order();
-    [[nodiscard]] Vec3 extent() const;
 
     BoxType type_;
     std::vector<Vec3> points_;
@@ -70,13 +71,12 @@ public:
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
     [[nodiscard]] PartJacobians corners() const;
     [[nodiscard]] PartJacobians corners_of_children() const;
+    [[nodiscard]] Vec3 size() const;
     [[nodiscard]] Mat3 center() const;
     [[nodiscard]] PartDerivatives derivatives(const Mat3& h) const;
     [[nodiscard]] std::vector<PolynomialPart> children() const;
 
 private:
-    [[nodiscard]] Vec3 size() const;
-
     BernsteinColumns columns_;
     PartFrame frame_;
 };
