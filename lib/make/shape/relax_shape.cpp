@@ -79,18 +79,19 @@ public:
             points[p] = start_[p] / side_ + ways[p];
         }
         const std::vector<Vec3> children = fine(points);
-        const double corners = 8 * std::pow(parts(), 3);  // of the children of a cell
+        const double part = 1 / (8 * std::pow(parts(), 3));  // of a corner of the children of a cell: a power of 2
         // The last place is the sum of the distortions.
         std::vector<double> slopes =
             parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.children_.cells[c];
+                const double scale = scales_[c] * part;
                 for (std::size_t k = 0; k < 8; ++k) {
                     const Distortion at = distortion_of(scales_[c] * edges_at(cell, k, children.data()), epsilon_);
-                    to.back() += at.value / corners;
+                    to.back() += at.value * part;
                     for (std::size_t e = 0; e < 3; ++e) {
                         const Index end = cell[kCornerNeighbors[k][e]];
                         for (int axis = 0; axis < 3; ++axis) {
-                            const double slope = scales_[c] * at.gradient[static_cast<int>(e)][axis] / corners;
+                            const double slope = scale * at.gradient[static_cast<int>(e)][axis];
                             to[3 * end + static_cast<std::size_t>(axis)] += slope;
                             to[3 * cell[k] + static_cast<std::size_t>(axis)] -= slope;
                         }

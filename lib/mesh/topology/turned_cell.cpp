@@ -17,32 +17,29 @@ TurnedCell as_it_is(const Topology& topology, Index cell) {
 }
 
 std::optional<TurnedCell> cell_beyond(const Topology& topology, const TurnedCell& from, std::size_t axis, std::size_t side) {
-    const std::size_t bit = std::size_t{1} << axis;
-    std::array<Index, 4> shared;
-    std::size_t count = 0;
+    const std::size_t bit = std::size_t{1} << axis, low = side == 1 ? bit : 0;  // the first corner of the side
+    const auto octant_in = [](const std::array<Index, 8>& cell, Index point) {
+        return kCornerOctants[static_cast<std::size_t>(std::find(cell.begin(), cell.end(), point) - cell.begin())];
+    };
+    // Two opposite corners of the side have the same parameter of a cell along one axis alone: the bit of the side's axis.
+    const auto axis_bit = [&](const std::array<Index, 8>& cell) {
+        return 7 ^ octant_in(cell, from.corners[low]) ^ octant_in(cell, from.corners[low ^ bit ^ 7]);
+    };
+    const auto& here = topology.cells[from.cell];
+    const std::size_t across = axis_bit(here);  // 1, 2 or 4
+    const std::size_t face = across / 2 * 2 + ((octant_in(here, from.corners[low]) & across) != 0 ? 1 : 0);
+    const auto [c0, c1] = topology.face_cells[topology.cell_faces[from.cell][face]];
+    if (c1 == kNone) return std::nullopt;
+    TurnedCell next{c0 == from.cell ? c1 : c0, {}};
+    const auto& there = topology.cells[next.cell];
+    const std::size_t on = axis_bit(there);
     for (std::size_t k = 0; k < 8; ++k) {
-        if (((k & bit) != 0) == (side == 1)) shared[count++] = from.corners[k];
+        if ((k & bit) != low) continue;
+        const Index p = from.corners[k];
+        next.corners[k ^ bit] = p;
+        next.corners[k] = there[kCornerOctants[octant_in(there, p) ^ on]];
     }
-    const auto in = [](const auto& list, Index p) { return std::find(list.begin(), list.end(), p) != list.end(); };
-    for (const Index f : topology.cell_faces[from.cell]) {
-        const auto& quad = topology.faces[f];
-        if (!in(quad, shared[0]) || !in(quad, shared[3])) continue;
-        const auto [c0, c1] = topology.face_cells[f];
-        if (c1 == kNone) return std::nullopt;
-        TurnedCell next{c0 == from.cell ? c1 : c0, {}};
-        const auto& cell = topology.cells[next.cell];
-        for (std::size_t k = 0; k < 8; ++k) {
-            if (((k & bit) != 0) != (side == 1)) continue;
-            const Index p = from.corners[k];
-            const auto slot = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), p) - cell.begin());
-            next.corners[k ^ bit] = p;
-            for (const std::size_t n : kCornerNeighbors[slot]) {
-                if (!in(shared, cell[n])) next.corners[k] = cell[n];
-            }
-        }
-        return next;
-    }
-    return std::nullopt;
+    return next;
 }
 
 }  // namespace subvol::detail

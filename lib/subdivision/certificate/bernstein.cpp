@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bernstein.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 namespace subvol::detail {
 
@@ -80,6 +83,30 @@ Vec3 value_at(const Bernstein<Vec3>& polynomial, const Vec3& uvw) {
         }
     }
     return sum;
+}
+
+std::array<Vec3, 27> values_at_halves(const Bernstein<Vec3>& polynomial) {
+    std::vector<Vec3> values = polynomial.values;
+    std::size_t before = 1, after = values.size();  // values of the axes before and after the one that is evaluated
+    for (std::size_t axis = 0; axis < 3; ++axis, before *= 3) {
+        const int degree = polynomial.degree[axis];
+        const std::size_t n = polynomial.size()[axis];
+        after /= n;
+        std::vector<Vec3> evaluated(before * 3 * after, Vec3(0.0));
+        for (std::size_t b = 0; b < before; ++b) {
+            for (std::size_t a = 0; a < after; ++a) {
+                const auto at = [&](std::size_t k) { return values[(b * n + k) * after + a]; };
+                Vec3* to = &evaluated[b * 3 * after + a];
+                to[0] = at(0);
+                for (std::size_t k = 0; k < n; ++k) to[after] += at(k) * std::ldexp(binomial(degree, k), -degree);
+                to[2 * after] = at(n - 1);
+            }
+        }
+        values = std::move(evaluated);
+    }
+    std::array<Vec3, 27> places;
+    std::ranges::copy(values, places.begin());
+    return places;
 }
 
 Bernstein<double> determinant(const BernsteinColumns& columns) {

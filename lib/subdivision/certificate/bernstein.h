@@ -32,6 +32,9 @@ using BernsteinColumns = std::array<Bernstein<Vec3>, 3>;
 /// The value at a place.
 [[nodiscard]] Vec3 value_at(const Bernstein<Vec3>& polynomial, const Vec3& uvw);
 
+/// The values at the 3×3×3 corners of its eighths, place (9i + 3j + k) at (i, j, k) / 2.
+[[nodiscard]] std::array<Vec3, 27> values_at_halves(const Bernstein<Vec3>& polynomial);
+
 /// The determinant of three columns. Its coefficients are sums of products with positive weights whose sum is 1, so that
 /// rounding errors are below 100 units in the last place of the same sum of magnitudes.
 [[nodiscard]] Bernstein<double> determinant(const BernsteinColumns& columns);

@@ -12,10 +12,13 @@
 #include "cell_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <mutex>
 #include <numeric>
 
+#include "dense_rows.h"
+#include "derivative_form.h"
+#include "kept.h"
 #include "subvol/detail/sparse_rows.h"
 #include "subvol/stencil_table.h"
 
@@ -23,34 +26,8 @@ namespace subvol::detail {
 
 namespace {
 
-// The rules of a type.
-const std::array<CsrMatrix, 8>& rules_of(const BoxType& type) {
-    static std::mutex mutex;
-    static std::map<BoxType, std::array<CsrMatrix, 8>> all;
-    const std::scoped_lock lock(mutex);
-    const auto found = all.find(type);
-    if (found != all.end()) return found->second;
-    const BoxRules rules = box_rules(type);
-    std::array<CsrMatrix, 8> sparse;
-    for (std::size_t s = 0; s < 8; ++s) {
-        for (Eigen::Index row = 0; row < rules.children[s].rows(); ++row) {
-            for (Eigen::Index column = 0; column < rules.children[s].cols(); ++column) {
-                if (rules.children[s](row, column) == 0) continue;
-                sparse[s].columns.push_back(static_cast<Index>(column));
-                sparse[s].weights.push_back(rules.children[s](row, column));
-            }
-            sparse[s].offsets.push_back(sparse[s].columns.size());
-        }
-    }
-    return all.emplace(type, std::move(sparse)).first->second;
-}
-
-// A part is too small to share its rows.
-std::vector<Vec3> product_of(const CsrMatrix& matrix, const std::vector<Vec3>& values) {
-    std::vector<Vec3> sums(row_count(matrix));
-    for (std::size_t row = 0; row < sums.size(); ++row) sums[row] = row_times(matrix, row, values);
-    return sums;
-}
+constexpr std::size_t kMostPoints = 216, kMostFine = 343;  // of a window, and of the windows of all children
+constexpr std::size_t kMostRows = 40;                      // of B and W
 
 bool is_in_order(const BoxType& type) {
     return type[0] >= type[1] && type[1] >= type[2] &&
@@ -83,6 +60,15 @@ Vec3 PartFrame::corner(std::size_t corner) const {
     for (std::size_t a = 0; a < 3; ++a) {
         const bool upper = ((corner >> (2 - a) & 1) != 0) != (turned[a] != 0);
         if (upper) place[axes[a]] += size;
+    }
+    return place;
+}
+
+Vec3 PartFrame::corner_of_child(std::size_t number) const {
+    Vec3 place = low;
+    const std::array<std::size_t, 3> steps{number / 9, number / 3 % 3, number % 3};
+    for (std::size_t a = 0; a < 3; ++a) {
+        place[axes[a]] += size / 2 * static_cast<double>(turned[a] != 0 ? 2 - steps[a] : steps[a]);
     }
     return place;
 }
@@ -145,65 +131,193 @@ void GridPart::put_in_order() {
     }
 }
 
-// Calls visit(c, type, differences, back) for each axis c of the part, with the type in which that axis comes first, its
-// differences, and how axes of the form are those of the part: axis k of the part is back[k] of the form.
-template <class Visit>
-void GridPart::each_axis(const Visit& visit) const {
-    const std::array<std::size_t, 3> size{type_[0].points(), type_[1].points(), type_[2].points()};
-    for (std::size_t c = 0; c < 3; ++c) {
-        // Axis k of the form is axes[k] of the part: 0 1 2, 1 0 2 or 2 0 1; back it is 0 1 2, 1 0 2 or 1 2 0.
-        const std::array<std::size_t, 3> axes = c == 0   ? std::array<std::size_t, 3>{0, 1, 2}
-                                                : c == 1 ? std::array<std::size_t, 3>{1, 0, 2}
-                                                         : std::array<std::size_t, 3>{2, 0, 1};
-        const std::array<std::size_t, 3> back = c == 2 ? std::array<std::size_t, 3>{1, 2, 0} : axes;
-        const std::vector<Vec3> points = reordered(points_, size, axes);
-        const std::size_t across = size[axes[1]] * size[axes[2]];
-        std::vector<Vec3> differences(points.size() - across);
-        for (std::size_t d = 0; d < differences.size(); ++d) differences[d] = points[d + across] - points[d];
-        visit(c, BoxType{type_[axes[0]], type_[axes[1]], type_[axes[2]]}, differences, back);
-    }
-}
-
 namespace {
 
-// Puts the derivatives along axis c at the corners.
-void put_corners(PartCorners& part, std::size_t c, const std::vector<Vec3>& values, const std::vector<Vec3>& differences,
-                 const std::array<std::size_t, 3>& back) {
-    for (const Vec3& d : differences) part.size = glm::max(part.size, glm::abs(d));
-    const auto corners = reordered(values, {2, 2, 2}, back);
-    for (std::size_t k = 0; k < 8; ++k) part.corners[k][static_cast<int>(c)] = corners[k];
+/// Derivatives along an axis of a type of parts: rows over the differences of the window's points along it, whose numbers are
+/// those of their lower points.
+struct AxisForm {
+    std::size_t stride = 0;      // from the lower to the upper point
+    CsrMatrix corners;           // at the corners
+    CsrMatrix places;            // at the corners of the children
+    std::vector<Index> lower;    // of each difference; the rows below are over these
+    DenseRows polynomial;        // B, and W below it
+    DenseRows kept;              // V
+    std::vector<double> center;  // the polynomial in the middle
+    double kappa = 0;
+};
+
+/// What all parts of a type share, whose axes are in order.
+struct PartForm {
+    CsrMatrix fine;                             // the points of all children's windows, which have many in common
+    std::array<std::vector<Index>, 8> windows;  // of the children, among these points
+    std::array<AxisForm, 3> axes;
+};
+
+void add_row(CsrMatrix& to, const Eigen::MatrixXd& rows, Eigen::Index row, std::span<const Index> columns, double least) {
+    for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+        if (std::abs(rows(row, c)) <= least) continue;
+        to.columns.push_back(columns[static_cast<std::size_t>(c)]);
+        to.weights.push_back(rows(row, c));
+    }
+    to.offsets.push_back(to.columns.size());
+}
+
+AxisForm axis_form(const BoxType& type, std::size_t c) {
+    // Axis k of the form is axes[k] of the part: 0 1 2, 1 0 2 or 2 0 1.
+    constexpr std::array<std::array<std::size_t, 3>, 3> kAxes{{{0, 1, 2}, {1, 0, 2}, {2, 0, 1}}};
+    const std::array<std::size_t, 3>& axes = kAxes[c];
+    const BoxType turned{type[axes[0]], type[axes[1]], type[axes[2]]};
+    const DerivativeForm& form = derivative_form(turned);
+    AxisForm made;
+    made.kappa = derivative_bound(turned).value_or(HUGE_VAL);
+    const std::array<std::size_t, 3> strides{type[1].points() * type[2].points(), type[2].points(), 1};
+    made.stride = strides[c];
+    // The numbers of a box's entries when its axes are those of the part, in the order of the form.
+    const auto in_part = [&](const std::array<std::size_t, 3>& size, const std::array<std::size_t, 3>& stride) {
+        std::vector<Index> numbers;
+        for (std::size_t i = 0; i < size[axes[0]]; ++i) {
+            for (std::size_t j = 0; j < size[axes[1]]; ++j) {
+                for (std::size_t k = 0; k < size[axes[2]]; ++k) {
+                    numbers.push_back(static_cast<Index>(i * stride[axes[0]] + j * stride[axes[1]] + k * stride[axes[2]]));
+                }
+            }
+        }
+        return numbers;
+    };
+    std::array<std::size_t, 3> size{type[0].points(), type[1].points(), type[2].points()};
+    --size[c];
+    made.lower = in_part(size, strides);
+    // Rows of places and coefficients go back to the order of the part.
+    const auto rows_in_part = [&](const Eigen::MatrixXd& rows, std::size_t side) {
+        Eigen::MatrixXd result(rows.rows(), rows.cols());
+        const std::vector<Index> numbers = in_part({side, side, side}, {side * side, side, 1});
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            result.row(static_cast<Eigen::Index>(numbers[k])) = rows.row(static_cast<Eigen::Index>(k));
+        }
+        return result;
+    };
+    constexpr double kZero = 1e-14;  // what should be 0; rounding is allowed more (fold_test.cpp)
+    const Eigen::MatrixXd corners = rows_in_part(form.corners, 2), places = rows_in_part(form.places, 3);
+    for (Eigen::Index k = 0; k < corners.rows(); ++k) add_row(made.corners, corners, k, made.lower, kZero);
+    for (Eigen::Index k = 0; k < places.rows(); ++k) add_row(made.places, places, k, made.lower, kZero);
+    Eigen::MatrixXd polynomial(form.bernstein.rows() + form.weights.rows(), form.bernstein.cols());
+    polynomial << rows_in_part(form.bernstein, 3), form.weights;
+    made.polynomial = DenseRows(polynomial);
+    made.kept = DenseRows(form.kept);
+    made.center.assign(static_cast<std::size_t>(form.bernstein.cols()), 0);
+    constexpr std::array<double, 3> kMiddle{0.25, 0.5, 0.25};
+    for (std::size_t k = 0; k < 27; ++k) {
+        const double weight = kMiddle[k / 9] * kMiddle[k / 3 % 3] * kMiddle[k % 3];
+        for (std::size_t d = 0; d < made.center.size(); ++d) {
+            made.center[d] += weight * form.bernstein(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d));
+        }
+    }
+    return made;
+}
+
+PartForm make_part_form(const BoxType& type) {
+    PartForm form;
+    const BoxRules rules = box_rules(type);
+    std::vector<Index> columns(window_points(type));
+    std::iota(columns.begin(), columns.end(), Index{0});
+    std::map<std::vector<double>, Index> numbers;  // of points by their weights
+    for (std::size_t s = 0; s < 8; ++s) {
+        const Eigen::MatrixXd& rows = rules.children[s];
+        for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+            std::vector<double> weights(columns.size());
+            for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = rows(row, static_cast<Eigen::Index>(k));
+            const auto [at, is_new] = numbers.try_emplace(std::move(weights), static_cast<Index>(numbers.size()));
+            form.windows[s].push_back(at->second);
+            if (is_new) add_row(form.fine, rows, row, columns, 0);
+        }
+    }
+    for (std::size_t c = 0; c < 3; ++c) form.axes[c] = axis_form(type, c);
+    return form;
+}
+
+const PartForm& part_form(const BoxType& type) {
+    static Kept<BoxType, PartForm> kept;
+    return kept.get(type, [&] { return make_part_form(type); });
+}
+
+/// J at places, by the rows of each axis.
+std::vector<Mat3> jacobians(const PartForm& form, CsrMatrix AxisForm::*rows, const std::vector<Vec3>& points) {
+    std::vector<Mat3> at(row_count(form.axes[0].*rows));
+    for (int c = 0; c < 3; ++c) {
+        const AxisForm& axis = form.axes[static_cast<std::size_t>(c)];
+        const CsrMatrix& matrix = axis.*rows;
+        for (std::size_t row = 0; row < at.size(); ++row) {
+            Vec3 sum(0.0);
+            for (std::size_t k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
+                const std::size_t p = matrix.columns[k];
+                sum += matrix.weights[k] * (points[p + axis.stride] - points[p]);
+            }
+            at[row][c] = sum;
+        }
+    }
+    return at;
 }
 
 }  // namespace
 
-PartDerivatives GridPart::derivatives() const {
-    PartDerivatives part;
-    each_axis([&](std::size_t c, const BoxType& type, const std::vector<Vec3>& differences, const auto& back) {
-        const DerivativeForm& form = derivative_form(type);
-        const std::vector<Vec3> all = form.all_rows.times(differences);
-        const auto bernstein = all.begin() + form.bernstein.rows(), weights = bernstein + form.weights.rows();
-        part.columns[c] = {{2, 2, 2}, reordered(std::vector<Vec3>(all.begin(), bernstein), {3, 3, 3}, back)};
-        put_corners(part.at, c, {weights, all.end()}, differences, back);
-        std::vector<Vec3> rest = form.kept_rows.times(std::vector<Vec3>(bernstein, weights));
-        for (std::size_t d = 0; d < rest.size(); ++d) rest[d] = differences[d] - rest[d];
-        part.rest[c] = {*derivative_bound(type), std::move(rest)};
-    });
-    return part;
+Vec3 GridPart::size() const {
+    Box box;
+    for (const Vec3& x : points_) box.add(x);
+    return box.size();
 }
 
-PartCorners GridPart::corners() const {
-    PartCorners part;
-    each_axis([&](std::size_t c, const BoxType& type, const std::vector<Vec3>& differences, const auto& back) {
-        put_corners(part, c, derivative_form(type).corner_rows.times(differences), differences, back);
-    });
+PartJacobians GridPart::corners() const {
+    return {jacobians(part_form(type_), &AxisForm::corners, points_), size()};
+}
+
+PartJacobians GridPart::corners_of_children() const {
+    return {jacobians(part_form(type_), &AxisForm::places, points_), size()};
+}
+
+Mat3 GridPart::center() const {
+    Mat3 middle(0.0);
+    for (int c = 0; c < 3; ++c) {
+        const AxisForm& axis = part_form(type_).axes[static_cast<std::size_t>(c)];
+        for (std::size_t d = 0; d < axis.lower.size(); ++d) {
+            middle[c] += axis.center[d] * (points_[axis.lower[d] + axis.stride] - points_[axis.lower[d]]);
+        }
+    }
+    return middle;
+}
+
+// Coordinates are taken about a point of the window, so that those of small parts do not cancel.
+PartDerivatives GridPart::derivatives(const Mat3& h) const {
+    PartDerivatives part;
+    std::array<Vec3, kMostPoints> y;
+    for (std::size_t p = 0; p < points_.size(); ++p) y[p] = h * (points_[p] - points_[0]);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const AxisForm& axis = part_form(type_).axes[c];
+        const std::size_t count = axis.lower.size();
+        std::array<Vec3, kMostPoints> differences, near;
+        for (std::size_t d = 0; d < count; ++d) differences[d] = y[axis.lower[d] + axis.stride] - y[axis.lower[d]];
+        std::array<Vec3, kMostRows> products;
+        axis.polynomial.multiply({differences.data(), count}, products);
+        constexpr std::size_t kCoefficients = 27;
+        part.columns[c] = {{2, 2, 2}, {products.begin(), products.begin() + kCoefficients}};
+        axis.kept.multiply({products.data() + kCoefficients, axis.polynomial.rows() - kCoefficients}, near);
+        Vec3 most(0.0);
+        for (std::size_t d = 0; d < count; ++d) most = glm::max(most, glm::abs(differences[d] - near[d]));
+        part.rest[static_cast<int>(c)] = axis.kappa * most;
+    }
     return part;
 }
 
 std::vector<GridPart> GridPart::children() const {
-    const auto& rules = rules_of(type_);
+    const PartForm& form = part_form(type_);
+    std::array<Vec3, kMostFine> fine;
+    for (std::size_t p = 0; p < row_count(form.fine); ++p) fine[p] = row_times(form.fine, p, points_);
     std::vector<GridPart> parts;
+    parts.reserve(8);
     for (std::size_t s = 0; s < 8; ++s) {
-        parts.emplace_back(child_type(type_, s), product_of(rules[s], points_), frame_.child(s));
+        std::vector<Vec3> window;
+        window.reserve(form.windows[s].size());
+        for (const Index p : form.windows[s]) window.push_back(fine[p]);
+        parts.emplace_back(child_type(type_, s), std::move(window), frame_.child(s));
     }
     return parts;
 }
@@ -259,19 +373,43 @@ PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const 
     return {std::move(columns), frame};
 }
 
-PartDerivatives PolynomialPart::derivatives() const {
-    return {columns_, {}, corners()};
+Vec3 PolynomialPart::size() const {
+    Vec3 largest(0.0);
+    for (const auto& column : columns_) {
+        for (const Vec3& value : column.values) largest = glm::max(largest, glm::abs(value));
+    }
+    return largest;
 }
 
-PartCorners PolynomialPart::corners() const {
-    PartCorners part;
+PartJacobians PolynomialPart::corners() const {
+    PartJacobians part{std::vector<Mat3>(8), size()};
+    for (std::size_t k = 0; k < 8; ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            part.at[k][static_cast<int>(c)] = columns_[c].corner(k >> 2 & 1, k >> 1 & 1, k & 1);
+        }
+    }
+    return part;
+}
+
+PartJacobians PolynomialPart::corners_of_children() const {
+    PartJacobians part{std::vector<Mat3>(27), size()};
     for (std::size_t c = 0; c < 3; ++c) {
-        for (const Vec3& value : columns_[c].values) {
-            part.size = glm::max(part.size, glm::abs(value));
-        }
-        for (std::size_t k = 0; k < 8; ++k) {
-            part.corners[k][static_cast<int>(c)] = columns_[c].corner(k >> 2 & 1, k >> 1 & 1, k & 1);
-        }
+        const auto values = values_at_halves(columns_[c]);
+        for (std::size_t k = 0; k < values.size(); ++k) part.at[k][static_cast<int>(c)] = values[k];
+    }
+    return part;
+}
+
+Mat3 PolynomialPart::center() const {
+    Mat3 middle;
+    for (std::size_t c = 0; c < 3; ++c) middle[static_cast<int>(c)] = value_at(columns_[c], Vec3(0.5));
+    return middle;
+}
+
+PartDerivatives PolynomialPart::derivatives(const Mat3& h) const {
+    PartDerivatives part{columns_};
+    for (auto& column : part.columns) {
+        for (Vec3& value : column.values) value = h * value;
     }
     return part;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "box_rules.h"
 #include "fold_test.h"
 #include "subvol/vec.h"
 
@@ -21,6 +22,8 @@ struct PartFrame {
 
     /// The place of a corner of the part, 4u + 2v + w along its own axes.
     [[nodiscard]] Vec3 corner(std::size_t corner) const;
+    /// The place of a corner of its children, 9i + 3j + k at (i, j, k) / 2 along its own axes.
+    [[nodiscard]] Vec3 corner_of_child(std::size_t number) const;
     /// The frame of a child; bit 2 of `child` is its half along the first axis.
     [[nodiscard]] PartFrame child(std::size_t child) const;
 };
@@ -33,14 +36,19 @@ public:
     GridPart(const BoxType& type, std::vector<Vec3> points, const PartFrame& frame);
 
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
-    [[nodiscard]] PartDerivatives derivatives() const;
-    [[nodiscard]] PartCorners corners() const;
+    /// The Jacobians at the corners, and at the corners of all children (PartFrame).
+    [[nodiscard]] PartJacobians corners() const;
+    [[nodiscard]] PartJacobians corners_of_children() const;
+    /// No differences of neighbouring points are larger in a component.
+    [[nodiscard]] Vec3 size() const;
+    /// The polynomials' Jacobian in the middle.
+    [[nodiscard]] Mat3 center() const;
+    /// In coordinates y = H x.
+    [[nodiscard]] PartDerivatives derivatives(const Mat3& h) const;
     [[nodiscard]] std::vector<GridPart> children() const;
 
 private:
     void put_in_order();
-    template <class Visit>
-    void each_axis(const Visit& visit) const;
 
     BoxType type_;
     std::vector<Vec3> points_;
@@ -61,8 +69,11 @@ public:
     [[nodiscard]] static PolynomialPart tricubic(std::span<const Vec3, 64> points, const PartFrame& frame);
 
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
-    [[nodiscard]] PartDerivatives derivatives() const;
-    [[nodiscard]] PartCorners corners() const;
+    [[nodiscard]] PartJacobians corners() const;
+    [[nodiscard]] PartJacobians corners_of_children() const;
+    [[nodiscard]] Vec3 size() const;
+    [[nodiscard]] Mat3 center() const;
+    [[nodiscard]] PartDerivatives derivatives(const Mat3& h) const;
     [[nodiscard]] std::vector<PolynomialPart> children() const;
 
 private:

@@ -46,8 +46,8 @@ double largest_coordinate(const HexMesh& mesh) {
     return largest;
 }
 
-FoldPlace place_of(const PartFrame& frame, const PartDecision& decision) {
-    return {0, frame.corner(decision.corner), {}, decision.determinant / volume_of(frame)};
+FoldPlace fold_at(const Vec3& place, const PartDecision& decision, const PartFrame& frame) {
+    return {0, place, {}, decision.determinant / volume_of(frame)};
 }
 
 }  // namespace
@@ -73,14 +73,16 @@ template <class Part>
 FoldChecker::PartResult FoldChecker::decide_part(Part part, const Limits& limits) {
     PartResult result;
     const double whole = volume_of(part.frame());
-    const auto find_fold = [&](const Part& at) {
-        const PartDecision decision = witness(at.corners(), limits.error);
-        if (decision.verdict == PartVerdict::Folded) result.fold = place_of(at.frame(), decision);
-        return result.fold.has_value();
-    };
     if (limits.effort == FoldEffort::Witness) {
         result.open = whole;
-        if (!find_fold(part) && limits.levels > 0) std::ranges::any_of(part.children(), find_fold);
+        // Derivatives by the part's parameters change twice as much with points of children as those of the children.
+        const PartDecision decision =
+            limits.levels > 0 ? witness(part.corners_of_children(), 2 * limits.error) : witness(part.corners(), limits.error);
+        if (decision.verdict == PartVerdict::Folded) {
+            const PartFrame& at = part.frame();
+            result.fold =
+                fold_at(limits.levels > 0 ? at.corner_of_child(decision.place) : at.corner(decision.place), decision, at);
+        }
         return result;
     }
     const bool in_haste = limits.effort == FoldEffort::Verdict;
@@ -100,9 +102,9 @@ FoldChecker::PartResult FoldChecker::decide_part(Part part, const Limits& limits
             }
             ++result.tests;
             result.deepest = level;
-            const PartDecision decision = decide(at.derivatives(), limits.error);
+            const PartDecision decision = decide(at, limits.error);
             if (decision.verdict == PartVerdict::Folded) {
-                result.fold = place_of(at.frame(), decision);
+                result.fold = fold_at(at.frame().corner(decision.place), decision, at.frame());
                 return result;
             }
             if (decision.verdict == PartVerdict::Proved) continue;

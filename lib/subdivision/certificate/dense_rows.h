@@ -13,11 +13,15 @@ namespace subvol::detail {
 /// A matrix that vectors are multiplied by, faster than by a general product, which is made for more columns than three.
 class DenseRows {
 public:
+    static constexpr std::size_t kRowsTogether = 8;
+
     DenseRows() = default;
     explicit DenseRows(const Eigen::MatrixXd& matrix);
 
+    [[nodiscard]] std::size_t rows() const { return rows_; }
+
     /// A sum of `vectors` for each row. The order of the sums is that of the columns.
-    [[nodiscard]] std::vector<Vec3> times(std::span<const Vec3> vectors) const;
+    void multiply(std::span<const Vec3> vectors, std::span<Vec3> products) const;
 
 private:
     std::size_t rows_ = 0, columns_ = 0;

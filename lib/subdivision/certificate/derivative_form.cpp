@@ -348,17 +348,12 @@ MatrixXd nearest(const BoxType& type, const MatrixXd& kept, double width) {
 
 DerivativeForm make_form(const BoxType& type) {
     const std::vector<Exponents> exponents = exponents_of(type);
-    DerivativeForm form{type, steps_of(type), {}, {}, {}, kept_of(type, exponents), {}, {}, {}, {}};
+    DerivativeForm form{type, steps_of(type), {}, {}, {}, kept_of(type, exponents), {}, values_at(type, 1)};
     form.corners.resize(8, form.kept.rows());
     for (std::size_t k = 0; k < 8; ++k) form.corners.row(index(k)) = corner_of(type, k);
     form.three_bernstein = symmetric(exact_three(type, fitted(type), exponents, form.kept), type);
     form.bernstein = form.three_bernstein / 3;
     form.weights = nearest(type, form.kept, 0);  // what is largest decides, and that is far from the cell
-    MatrixXd all(form.bernstein.rows() + form.weights.rows() + form.corners.rows(), form.kept.rows());
-    all << form.bernstein, form.weights, form.corners;
-    form.all_rows = DenseRows(all);
-    form.kept_rows = DenseRows(form.kept);
-    form.corner_rows = DenseRows(form.corners);
     return form;
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "box_rules.h"
-#include "dense_rows.h"
 
 namespace subvol::detail {
 
@@ -43,9 +42,7 @@ struct DerivativeForm {
     Eigen::MatrixXd three_bernstein;
     Eigen::MatrixXd kept;     ///< V, in integers
     Eigen::MatrixXd weights;  ///< W: of the differences that are near d in the least squares sense, their coefficients
-    DenseRows all_rows;       ///< rows of B, W and `corners` below each other, for products with vectors
-    DenseRows kept_rows;      ///< rows of V
-    DenseRows corner_rows;    ///< rows of `corners`
+    Eigen::MatrixXd places;   ///< φ at the 3×3×3 corners of the children, place (9i + 3j + k) at (i, j, k) / 2
 
     [[nodiscard]] Eigen::Index differences() const { return corners.cols(); }
 };

@@ -42,7 +42,7 @@ public:
     /// What is known of all cells.
     [[nodiscard]] FoldCheck found() const;
 
-private:
+    /// What is known of a cell.
     struct CellState {
         std::optional<FoldPlace> fold;
         double open = 0;
@@ -51,6 +51,12 @@ private:
         int deepest = 0;
         CellSamples samples;
     };
+    [[nodiscard]] const std::vector<CellState>& states() const { return cells_; }
+
+    /// Goes back to what was known with points that have been moved to again.
+    void restore(std::vector<CellState> states) { cells_ = std::move(states); }
+
+private:
     /// A descendant of a control cell that is not decided: its number in its level.
     struct OpenCell {
         Index cell, control;

@@ -55,48 +55,45 @@ bool has_positive_determinant(const BernsteinColumns& y, const Mat3& rest) {
     }
     const double all = permanent(largest + rest);
     const double change = all - permanent(largest) + kOfDeterminants * all;
+    // Coefficients at corners are the determinants there: most parts that fail do so at one of them.
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto at = [&](std::size_t c) { return y[c].corner(k >> 2 & 1, k >> 1 & 1, k & 1); };
+        if (!(glm::determinant(Mat3(at(0), at(1), at(2))) > change)) return false;
+    }
     const Bernstein<double> det = determinant(y);
     return *std::ranges::min_element(det.values) > change;
 }
 
 }  // namespace
 
-PartDecision witness(const PartCorners& part, double error) {
+PartDecision witness(const PartJacobians& part, double error) {
     PartDecision decision;
-    for (std::size_t k = 0; k < 8; ++k) {
-        const Mat3& j = part.corners[k];
-        const double det = glm::determinant(j), a = glm::length(j[0]), b = glm::length(j[1]), c = glm::length(j[2]);
-        const double each = kOfPoints * error + kRounding * std::max({part.size.x, part.size.y, part.size.z});  // of a column
+    const double each = kOfPoints * error + kRounding * std::max({part.size.x, part.size.y, part.size.z});  // of a column
+    for (std::size_t k = 0; k < part.at.size(); ++k) {
+        const Mat3& j = part.at[k];
+        const double det = glm::determinant(j);
+        if (!(det < 0) || (decision.verdict == PartVerdict::Folded && det >= decision.determinant)) continue;
+        const double a = glm::length(j[0]), b = glm::length(j[1]), c = glm::length(j[2]);
         const double margin = each * (a * b + b * c + c * a) + each * each * (a + b + c) + each * each * each;
-        if (!(det < -2 * margin) || (decision.verdict == PartVerdict::Folded && det >= decision.determinant)) continue;
-        decision = {PartVerdict::Folded, k, det};
+        if (det < -2 * margin) decision = {PartVerdict::Folded, k, det};
     }
     return decision;
 }
 
-PartDecision decide(const PartDerivatives& part, double error) {
-    const PartDecision folded = witness(part.at, error);
-    if (folded.verdict == PartVerdict::Folded) return folded;
-    Mat3 center;
-    for (int c = 0; c < 3; ++c) center[c] = value_at(part.columns[static_cast<std::size_t>(c)], Vec3(0.5));
-    if (!(glm::determinant(center) > 0)) return {};
+std::optional<PartScale> part_scale(const Mat3& center, const Vec3& size, double error) {
+    if (!(glm::determinant(center) > 0)) return std::nullopt;
     const Mat3 inverse = glm::inverse(center);
     const double condition = largest_row(center) * largest_row(inverse);
-    if (!(condition < kMostCondition)) return {};
+    if (!(condition < kMostCondition)) return std::nullopt;
     const Vec3 of_points(2 * kOfPoints * error + std::numeric_limits<double>::min());
     Vec3 slack(kRounding);
-    for (int k = 0; k < 3; ++k) slack += glm::abs(inverse[k]) * (kRounding * part.at.size[k] + of_points[k]);
-    BernsteinColumns y = part.columns;
-    Mat3 rest(0.0);
-    for (int c = 0; c < 3; ++c) {
-        const auto column = static_cast<std::size_t>(c);
-        for (Vec3& value : y[column].values) value = inverse * value;
-        Vec3 most(0.0);
-        for (const Vec3& d : part.rest[column].differences) most = glm::max(most, glm::abs(inverse * d));
-        rest[c] = most * part.rest[column].kappa + slack;
-    }
-    const bool proved = norm_of(y, rest) < 1 || has_positive_determinant(y, rest);
-    return {proved ? PartVerdict::Proved : PartVerdict::Undecided};
+    for (int k = 0; k < 3; ++k) slack += glm::abs(inverse[k]) * (kRounding * size[k] + of_points[k]);
+    return PartScale{inverse, slack};
+}
+
+bool is_positive(PartDerivatives scaled, const Vec3& slack) {
+    for (int c = 0; c < 3; ++c) scaled.rest[c] += slack;
+    return norm_of(scaled.columns, scaled.rest) < 1 || has_positive_determinant(scaled.columns, scaled.rest);
 }
 
 }  // namespace subvol::detail

@@ -3,37 +3,31 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "bernstein.h"
-#include "derivative_form.h"
 
 namespace subvol::detail {
 
-/// J at the corners of a part.
-struct PartCorners {
-    std::array<Mat3, 8> corners;  ///< 4u + 2v + w
-    Vec3 size{0.0};  ///< the largest differences of neighbouring points, component by component, of which the columns are sums
+/// J at places of a part.
+struct PartJacobians {
+    std::vector<Mat3> at;
+    Vec3 size{0.0};  ///< no differences of neighbouring points, of which the columns are sums, are larger in a component
 };
 
-/// What is known of the Jacobian J of a part.
+/// What is known of the Jacobian of a part in some coordinates.
 struct PartDerivatives {
-    struct Rest {
-        double kappa = 0;
-        std::vector<Vec3> differences;
-    };
-    BernsteinColumns columns;  ///< polynomials near the columns of J
-    /// For each axis the bound and the vectors that it bounds: J's column is within kappa × (the differences) of the
-    /// polynomial, component by component in any coordinates; empty if it is the polynomial
-    std::array<Rest, 3> rest;
-    PartCorners at;
+    BernsteinColumns columns;  ///< polynomials near its columns
+    Mat3 rest{0.0};            ///< how far these may be off, component by component
 };
 
 enum class PartVerdict { Proved, Folded, Undecided };
 
 struct PartDecision {
     PartVerdict verdict = PartVerdict::Undecided;
-    std::size_t corner = 0;  ///< corner of a folded part
-    double determinant = 0;  ///< determinant of a folded part
+    std::size_t place = 0;   ///< the place where the part folds
+    double determinant = 0;  ///< the determinant there
 };
 
 /// Decides whether det J > 0 on a part. With G the polynomial at its centre, H an inverse of G, Y = H J and the rest R ≥ |H E|:
@@ -42,10 +36,30 @@ struct PartDecision {
 ///     determinant  the least Bernstein coefficient of det Y exceeds per(|Y| + R) − per(|Y|), the permanents of what is largest
 ///     witness      det J at a corner is below zero by more than its rounding
 ///
+/// Part: has its Jacobians at the corners (4u + 2v + w), G, the size of its differences, and its derivatives in the coordinates
+///       that a matrix leads to
 /// error: of a point's coordinates
-[[nodiscard]] PartDecision decide(const PartDerivatives& part, double error);
+template <class Part>
+[[nodiscard]] PartDecision decide(const Part& part, double error);
 
-/// Looks for a fold at the corners alone: never `Proved`. error: as for `decide`
-[[nodiscard]] PartDecision witness(const PartCorners& part, double error);
+/// Looks for the worst fold at places alone: never `Proved`. error: as for `decide`
+[[nodiscard]] PartDecision witness(const PartJacobians& part, double error);
+
+/// H for a part, and what is added to the rest in its coordinates because of rounding; nothing if G has no certain inverse.
+struct PartScale {
+    Mat3 inverse;
+    Vec3 slack;
+};
+[[nodiscard]] std::optional<PartScale> part_scale(const Mat3& center, const Vec3& size, double error);
+
+/// Whether one of the first two tests is passed. scaled: in the coordinates of H, without the slack
+[[nodiscard]] bool is_positive(PartDerivatives scaled, const Vec3& slack);
+
+template <class Part>
+PartDecision decide(const Part& part, double error) {
+    const auto scale = part_scale(part.center(), part.size(), error);
+    if (scale && is_positive(part.derivatives(scale->inverse), scale->slack)) return {PartVerdict::Proved};
+    return witness(part.corners(), error);  // most parts are proved, so a fold is looked for afterwards
+}
 
 }  // namespace subvol::detail

@@ -114,7 +114,7 @@ private:
     // Ends early where three rounds in a row left as many bad cells as before. bad: of each cell how often it was bad
     void work(std::vector<std::uint8_t>& bad, MendReport& report) {
         std::size_t fewest = bad.size() + 1, left = 0;
-        std::vector<Vec3> best;
+        Found best;
         constexpr int kPatience = 3;
         int in_vain = 0;
         for (int round = 0; round < options_.rounds && in_vain < kPatience && used() < budget_; ++round) {
@@ -125,10 +125,24 @@ private:
             in_vain = left < fewest ? 0 : in_vain + 1;
             if (left > fewest) continue;
             fewest = left;
-            best = mesh_.points;
+            best = {mesh_.points, checker_.states(), stale_};
         }
-        if (left > fewest) move(best);
+        if (left > fewest) restore(std::move(best));
         check_all(bad);
+    }
+
+    /// Points, and what is known with them: to find it again would cost another check.
+    struct Found {
+        std::vector<Vec3> points;
+        std::vector<FoldChecker::CellState> cells;
+        std::vector<std::uint8_t> stale;
+    };
+
+    void restore(Found found) {
+        checker_.move(found.points);
+        checker_.restore(std::move(found.cells));
+        mesh_.points = std::move(found.points);
+        stale_ = std::move(found.stale);
     }
 
     // Checks the cells near points that move.

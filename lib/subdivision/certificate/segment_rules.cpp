@@ -17,7 +17,7 @@ namespace subvol::detail {
 namespace {
 
 bool is_proved(PolynomialPart part, double error, int levels) {
-    const PartDecision decision = decide(part.derivatives(), error);
+    const PartDecision decision = decide(part, error);
     if (decision.verdict != PartVerdict::Undecided) return decision.verdict == PartVerdict::Proved;
     if (levels == 0) return false;
     return std::ranges::all_of(part.children(),
