@@ -9,7 +9,10 @@
 #include "outputs.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "steps.h"
 #include "subvol/mend_folds.h"
+#include "subvol/mesh_motion.h"
+#include "subvol/mesh_series.h"
 #include "subvol/option.h"
 #include "text.h"
 #include "verb.h"
@@ -25,19 +28,25 @@ public:
               "  subvol check part.vtu\n"
               "  subvol check part.vtu --scheme cc --json\n"
               "  subvol check part.vtu --mend -o sound.vtu\n"
+              "  subvol check run.pvd --series                  all steps, and all times between them\n"
               "\n"
               "The exit code is 1 if the limit folds. Cells at irregular edges are refined; near the edges those of "
               "mcq stay undecided. Undecided cells are sampled: a negative determinant is a fold, but without one nothing is "
               "proved. "
               "With --mend control points move, as little as it takes, until no regular cell folds; the figures are "
               "then of the mended mesh, whose fields stay with their points.\n"
+              "With --series the points move straight from each step to the next, and cells are proved for all times; between "
+              "steps nothing is sampled.\n"
               "JSON: verdict (sound, folded or undecided), cells {proved, folded, undecided, irregular: those of the "
-              "undecided that are at irregular edges}, open_volume (of undecided cells, in cells), sampled {cells: that no "
+              "undecided that are at irregular edges}, undecided_kinds {kind: cells}, open_volume (of undecided cells, in "
+              "cells), sampled {cells: that no "
               "test "
               "decided; places; folded: cells with a negative determinant; least: determinant, as a part of the mean}, places, "
               "one for each folded cell: cell, parameters, at, determinant, sampled (found by sampling); with --mend also mend "
               "{folded, open: before; moved, "
-              "farthest_edges, boundary_edges, rounds, left: cells with reasons}.") {
+              "farthest_edges, boundary_edges, rounds, left: cells with reasons}; with --series verdict, steps and between: a "
+              "list "
+              "with step (from and to), time (times), and the members above without tests; places between steps have a time.") {
         add_input(app(), "FILE", input_, input_help())->required();
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
@@ -46,7 +55,12 @@ public:
                         ->needs(mend));
         add_options(app(), options_of(mending_));
         for (const char* name : {"--boundary-move", "--rounds"}) app().get_option(name)->needs(mend);
-        set_essentials({"--scheme", "--levels", "--irregular-levels", "--mend", "--output", "--json"});
+        CLI::Option* series = add_option(
+            app(), Option("series", series_).help("check all steps, or those of --step, and all times between them"));
+        series->excludes(mend);
+        add_options(app(), options_of(motion_));
+        app().get_option("--time-levels")->needs(series);
+        set_essentials({"--scheme", "--levels", "--irregular-levels", "--mend", "--series", "--output", "--json"});
     }
 
     int run(Report& report) override {
@@ -58,6 +72,7 @@ public:
         if (mend_) check_output(output_, {".vtu", ".vtkhdf"});
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
+        if (series_) return check_series(options, report);
         MeshSets sets;
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), sets));
         if (mend_) return mend(std::move(mesh), sets, options, report);
@@ -67,6 +82,88 @@ public:
     }
 
 private:
+    int check_series(const FoldOptions& folds, Report& report) {
+        const MeshSeries series = open_series(input_);
+        if (series.size() < 2)
+            throw Error(ErrorCode::InvalidInput, "it has one step", input_, "a series of steps for --series");
+        CommonOptions options = common();
+        if (options.read.time)
+            throw Error(ErrorCode::InvalidInput, "nothing moves at one time", "--time", "--step 2-5, or all");
+        if (!options.step) options.step = "all";
+        const FrameRange range = chosen_steps(series, options);
+        if (range.count() < 2) throw Error(ErrorCode::InvalidInput, "nothing moves in one step", "--step", "2-5, or all");
+        const CommonOptions all = report.unpack(for_steps(input_, options, range, report.progress()));
+        FoldMotionOptions motion = motion_;
+        motion.folds = folds;
+        Json steps = Json::array(), between = Json::array();
+        std::optional<HexMesh> before;
+        report.begin_series();
+        for (int step = range.first; step <= range.last; ++step) {
+            report.begin_part("step", static_cast<std::size_t>(step - range.first), static_cast<std::size_t>(range.count()));
+            const double time = series.times[static_cast<std::size_t>(step)];
+            MeshSets sets;
+            HexMesh mesh = report.unpack(load_mesh(input_, of_step(all, step), report.progress(), sets));
+            const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, folds); });
+            steps.push_back({{"step", step}, {"time", time}});
+            add(found, steps.back());
+            say(found, text("step ", step, ", time ", time), report);
+            if (before) {
+                const double from = series.times[static_cast<std::size_t>(step) - 1];
+                if (!moved_cells(*before, mesh)) {
+                    report.warn(
+                        text("the cells change between the steps ", step - 1, " and ", step, ": nothing is said between them"));
+                    any_undecided_ = true;
+                } else {
+                    HexMesh after = mesh;
+                    if (!same_cells(*before, mesh)) {
+                        report.warn(text("the sharp edges change between the steps ", step - 1, " and ", step,
+                                         ": between them those of the first are kept"));
+                        after.creases = before->creases;
+                        after.sharp_faces = before->sharp_faces;
+                    }
+                    FoldCheck moving = report.timed("between", [&] { return check_folds_between(*before, after, motion); });
+                    for (FoldPlace& at : moving.places) at.time = from + at.time * (time - from);
+                    between.push_back({{"from", step - 1}, {"to", step}, {"times", {from, time}}});
+                    add(moving, between.back());
+                    for (std::size_t k = 0; k < moving.places.size(); ++k)
+                        between.back()["places"][k]["time"] = moving.places[k].time;
+                    say(moving, text("between ", step - 1, " and ", step), report);
+                }
+            }
+            before = std::move(mesh);
+        }
+        report.end_series();
+        report.begin_part("", 0, 0);
+        report["verdict"] = any_folded_ ? "folded" : any_undecided_ ? "undecided" : "sound";
+        report["steps"] = std::move(steps);
+        report["between"] = std::move(between);
+        report.say(text("verdict       ", report["verdict"].get<std::string>()));
+        report.all_said();
+        return any_folded_ ? 1 : 0;
+    }
+
+    /// The figures of one step, or between two.
+    void add(const FoldCheck& found, Json& entry) {
+        entry.update(json_of(facts_of(found.report)));
+        entry["places"] = places_of(found);
+        any_folded_ = any_folded_ || found.report.folded > 0;
+        any_undecided_ = any_undecided_ || found.report.open + found.report.irregular > 0;
+    }
+
+    static void say(const FoldCheck& found, const std::string& where, Report& report) {
+        const FoldReport& all = found.report;
+        std::string line = where + ": ";
+        if (all.folded > 0) {
+            const FoldPlace& at = found.places.front();
+            line += text(counted(all.folded, "cell"), " folded, one of them ", at.cell, " at ", at.position.x, ", ",
+                         at.position.y, ", ", at.position.z);
+            if (at.time != 0) line += text(", time ", at.time);
+            line += "; ";
+        }
+        if (all.open + all.irregular > 0) line += text(counted(all.open + all.irregular, "cell"), " undecided; ");
+        report.say(line + text(all.proved, " proved"));
+    }
+
     int mend(HexMesh mesh, const MeshSets& sets, const FoldOptions& folds, Report& report) {
         MendOptions options = mending_;
         options.folds = folds;
@@ -93,6 +190,11 @@ private:
         const FoldReport& all = found.report;
         report.merge(facts_of(all));
         report["tests"] = all.tests;
+        report["places"] = places_of(found);
+        say(found, cells, report);
+    }
+
+    static Json places_of(const FoldCheck& found) {
         Json places = Json::array();
         for (const FoldPlace& at : found.places) {
             places.push_back(Json{{"cell", at.cell},
@@ -101,8 +203,7 @@ private:
                                   {"determinant", at.determinant},
                                   {"sampled", at.sampled}});
         }
-        report["places"] = std::move(places);
-        say(found, cells, report);
+        return places;
     }
 
     static void say(const FoldCheck& found, std::size_t cells, Report& report) {
@@ -138,7 +239,9 @@ private:
     RefineArguments scheme_;
     FoldOptions options_;
     MendOptions mending_;
-    bool mend_ = false;
+    FoldMotionOptions motion_;
+    bool mend_ = false, series_ = false;
+    bool any_folded_ = false, any_undecided_ = false;  // of a series
 };
 
 }  // namespace

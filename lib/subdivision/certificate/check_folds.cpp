@@ -9,6 +9,7 @@
 #include "edge_window.h"
 #include "fold_checker.h"
 #include "link_kind.h"
+#include "moving_part.h"
 #include "point_window.h"
 #include "segment_rules.h"
 #include "subvol/cell.h"
@@ -43,7 +44,35 @@ double volume_of(const PartFrame& frame) {
 double largest_coordinate(const HexMesh& mesh) {
     double largest = 0;
     for (const Vec3& x : mesh.points) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    for (const Attribute& motion : mesh.attributes) {
+        for (const double x : motion.values) largest = std::max(largest, std::abs(x));
+    }
     return largest;
+}
+
+// What is irregular at the corners of a cell.
+UndecidedKind kind_of_cell(const Topology& topology, Index cell) {
+    constexpr std::size_t kMostCells = 8;
+    bool sharp = false, boundary = false, crowded = false, point = false;
+    for (const Index p : topology.cells[cell]) {
+        std::size_t irregular = 0;
+        for (const Index e : topology.point_edges[p]) {
+            const std::size_t cells = topology.edge_cells[e].size();
+            for (const Index f : topology.edge_faces[e]) {
+                sharp = sharp || (topology.face_on_boundary(f) && !topology.face_on_hull(f));
+            }
+            boundary = boundary || (topology.edge_on_boundary[e] != 0 && cells > 2);
+            if (topology.edge_on_boundary[e] != 0 || (topology.edge_has_ring[e] != 0 && cells == 4)) continue;
+            crowded = crowded || topology.edge_has_ring[e] == 0 || cells > kMostCells;
+            ++irregular;
+        }
+        point = point || (irregular > 0 && (irregular != 2 || topology.point_on_boundary[p] != 0));
+    }
+    return sharp      ? UndecidedKind::SharpFace
+           : boundary ? UndecidedKind::BoundaryEdge
+           : crowded  ? UndecidedKind::CrowdedEdge
+           : point    ? UndecidedKind::IrregularPoint
+                      : UndecidedKind::IrregularEdge;
 }
 
 FoldPlace fold_at(const Vec3& place, const PartDecision& decision, const PartFrame& frame) {
@@ -58,14 +87,16 @@ struct FoldChecker::PartResult {
     double open = 0;
     std::size_t tests = 0;
     int deepest = 0;
+    bool moves = false;  ///< it may be proved for shorter times
 };
 
-/// limits of the search in a part. error: of the points' coordinates
+/// limits of the search in a part. error: of the points' coordinates; in_parts_of_time: leaves what moves much to shorter times
 struct FoldChecker::Limits {
     int levels;
     std::size_t tests;
     double error;
     FoldEffort effort;
+    bool in_parts_of_time = false;
 };
 
 // Level by level, so that large folds are found before small parts are proved.
@@ -108,6 +139,15 @@ FoldChecker::PartResult FoldChecker::decide_part(Part part, const Limits& limits
                 return result;
             }
             if (decision.verdict == PartVerdict::Proved) continue;
+            if constexpr (requires { at.norm_of_motion(); }) {
+                constexpr double kMuch = 0.25, kLittle = 0.02;
+                const double motion = limits.in_parts_of_time ? at.norm_of_motion() : 0;
+                result.moves = result.moves || motion > kMuch || (level == limits.levels && motion > kLittle);
+                if (motion > kMuch) {
+                    result.open = whole;
+                    return result;
+                }
+            }
             if (level == limits.levels) {
                 result.open += volume_of(at.frame());
                 if (in_haste) return result;
@@ -135,16 +175,78 @@ public:
     /// Decides a cell of the level; nothing if it has no grid.
     [[nodiscard]] std::optional<PartResult> decide(Index cell, const PartFrame& frame, const Limits& limits) const {
         if (scheme_ == Scheme::Linear) {
-            std::array<Vec3, 8> corners;
-            for (std::size_t k = 0; k < 8; ++k) corners[k] = place(cell, mesh_.cells[cell][k]);
-            return decide_part(PolynomialPart::trilinear(corners, frame), limits);
+            const auto part_of = [&](const auto& place_of) {
+                std::array<Vec3, 8> corners;
+                for (std::size_t k = 0; k < 8; ++k) corners[k] = place_of(mesh_.cells[cell][k]);
+                return PolynomialPart::trilinear(corners, frame);
+            };
+            return decide_parts(cell, part_of, limits);
         }
         return scheme_ == Scheme::Mcq ? decide_window(cell, frame, limits) : decide_spline(cell, frame, limits);
+    }
+
+    /// Whether a cell that is not decided may be for shorter times.
+    [[nodiscard]] bool is_open_for_motion(Index cell) const {
+        if (!moves() || scheme_ == Scheme::Linear) return false;
+        const std::optional<Index> edge = irregular_edge(topology_, cell);
+        return (edge && segments_[*edge] == kMoves) ||
+               std::ranges::any_of(topology_.cells[cell], [&](Index p) { return points_[p] == kMoves; });
     }
 
 private:
     // About the cell's first corner: differences of near coordinates are exact, or nearly so.
     [[nodiscard]] Vec3 place(Index cell, Index point) const { return mesh_.points[point] - mesh_.points[mesh_.cells[cell][0]]; }
+
+    [[nodiscard]] bool moves() const { return !mesh_.attributes.empty(); }
+    [[nodiscard]] Vec3 motion_of(std::size_t p) const {
+        const std::vector<double>& all = mesh_.attributes[0].values;
+        return {all[3 * p], all[3 * p + 1], all[3 * p + 2]};
+    }
+
+    // part_of: the part that the places of its points give, which are returned by a function
+    template <class PartOf>
+    [[nodiscard]] PartResult decide_parts(Index cell, const PartOf& part_of, const Limits& limits) const {
+        auto middle = part_of([&](Index p) { return place(cell, p); });
+        if (!moves()) return decide_part(std::move(middle), limits);
+        return decide_part(
+            MovingPart(std::move(middle), part_of([&](Index p) { return motion_of(p) - motion_of(mesh_.cells[cell][0]); })),
+            limits);
+    }
+
+    // The error that stands for the motion of points about one of them: what is proved for all errors of coordinates is proved
+    // for it. Points x + s m, with m near N x, are (x + s (m − N x) (1 + s N)⁻¹) (1 + s N) by rows: where |N| < 1 only the
+    // bracket counts, as the rest turns and stretches the whole window.
+    [[nodiscard]] double error_of_motion(Index about, std::span<const Index> points) const {
+        if (!moves()) return 0;
+        Eigen::MatrixXd x(points.size(), 3), m(points.size(), 3);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const bool there = points[k] != kNone;
+            const Vec3 at = there ? mesh_.points[points[k]] - mesh_.points[about] : Vec3(0.0);
+            const Vec3 moved = there ? motion_of(points[k]) - motion_of(about) : Vec3(0.0);
+            for (int c = 0; c < 3; ++c) {
+                x(static_cast<Eigen::Index>(k), c) = at[c];
+                m(static_cast<Eigen::Index>(k), c) = moved[c];
+            }
+        }
+        const Eigen::Matrix3d n = (x.transpose() * x).ldlt().solve(x.transpose() * m);
+        constexpr double kRounding = 1e-14, kLargest = 0.9;
+        const double norm = n.norm();
+        if (!(norm < kLargest)) return std::numeric_limits<double>::infinity();
+        const double most =
+            (m - x * n).rowwise().norm().maxCoeff() + kRounding * (m.cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff());
+        return most / (1 - norm);
+    }
+
+    // proves(error): whether a window is proved with errors of coordinates; about: the point that it is taken about
+    template <class Proves>
+    [[nodiscard]] std::uint8_t state_of(Index about, std::span<const Index> points, const Limits& limits,
+                                        const Proves& proves) const {
+        if (!moves()) return proves(limits.error) ? kProved : kOther;
+        constexpr double kMost = 10;  // 1 / (1 − |N|)
+        const double motion = error_of_motion(about, points);
+        if (std::isfinite(motion) && proves(motion + kMost * limits.error)) return kProved;
+        return proves(limits.error) ? kMoves : kOther;
+    }
 
     [[nodiscard]] std::optional<PartResult> decide_window(Index cell, const PartFrame& frame, const Limits& limits) const {
         WidePoints grid;
@@ -163,16 +265,19 @@ private:
             low[a] = std::size_t{2} - type[a].low;
         }
         if (!has_bounds(type)) return std::nullopt;
-        std::vector<Vec3> points;
-        points.reserve(window_points(type));
-        for (std::size_t i = 0; i < type[0].points(); ++i) {
-            for (std::size_t j = 0; j < type[1].points(); ++j) {
-                for (std::size_t k = 0; k < type[2].points(); ++k) {
-                    points.push_back(place(cell, grid[(low[0] + i) + 6 * (low[1] + j) + 36 * (low[2] + k)]));
+        const auto part_of = [&](const auto& place_of) {
+            std::vector<Vec3> points;
+            points.reserve(window_points(type));
+            for (std::size_t i = 0; i < type[0].points(); ++i) {
+                for (std::size_t j = 0; j < type[1].points(); ++j) {
+                    for (std::size_t k = 0; k < type[2].points(); ++k) {
+                        points.push_back(place_of(grid[(low[0] + i) + 6 * (low[1] + j) + 36 * (low[2] + k)]));
+                    }
                 }
             }
-        }
-        return decide_part(GridPart(type, std::move(points), frame), limits);
+            return GridPart(type, std::move(points), frame);
+        };
+        return decide_parts(cell, part_of, limits);
     }
 
     [[nodiscard]] std::optional<PartResult> decide_spline(Index cell, const PartFrame& frame, const Limits& limits) const {
@@ -182,21 +287,24 @@ private:
             const bool is_proved = is_at_proved_segment(cell, limits) || is_at_proved_point(cell, limits);
             return is_proved ? std::optional(PartResult{{}, 0, 1, 0}) : std::nullopt;
         }
-        std::array<Vec3, 64> points{};
-        for (std::size_t n = 0; n < 64; ++n) {
-            if (grid[n] != kNone) points[n] = place(cell, grid[n]);
-        }
-        // Beyond the boundary the spline goes on straight: then its edge is the spline of the boundary alone.
-        for (const std::size_t stride : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) {
-            constexpr std::size_t kCorner = 1 + 4 + 16;
-            const bool low = grid[kCorner - stride] == kNone, high = grid[kCorner + 2 * stride] == kNone;
+        const auto part_of = [&](const auto& place_of) {
+            std::array<Vec3, 64> points{};
             for (std::size_t n = 0; n < 64; ++n) {
-                const std::size_t at = n / stride % 4;
-                if (low && at == 0) points[n] = points[n + stride] * 2.0 - points[n + 2 * stride];
-                if (high && at == 3) points[n] = points[n - stride] * 2.0 - points[n - 2 * stride];
+                if (grid[n] != kNone) points[n] = place_of(grid[n]);
             }
-        }
-        return decide_part(PolynomialPart::tricubic(points, frame), limits);
+            // Beyond the boundary the spline goes on straight: then its edge is the spline of the boundary alone.
+            for (const std::size_t stride : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) {
+                constexpr std::size_t kCorner = 1 + 4 + 16;
+                const bool low = grid[kCorner - stride] == kNone, high = grid[kCorner + 2 * stride] == kNone;
+                for (std::size_t n = 0; n < 64; ++n) {
+                    const std::size_t at = n / stride % 4;
+                    if (low && at == 0) points[n] = points[n + stride] * 2.0 - points[n + 2 * stride];
+                    if (high && at == 3) points[n] = points[n - stride] * 2.0 - points[n - 2 * stride];
+                }
+            }
+            return PolynomialPart::tricubic(points, frame);
+        };
+        return decide_parts(cell, part_of, limits);
     }
 
     // The volume of BSXW goes on straight beyond the boundary, as splines of a grid do; that of Catmull-Clark does not.
@@ -210,14 +318,14 @@ private:
         if (!edge) return false;
         const std::uint8_t known = std::atomic_ref(segments_[*edge]).load();
         if (known != kUnknown) return known == kProved;
-        const bool is_proved = proves_segment_at(std::ranges::min(topology_.edge_cells[*edge]), limits);
-        std::atomic_ref(segments_[*edge]).store(is_proved ? kProved : kOther);
-        return is_proved;
+        const std::uint8_t state = state_of_segment(std::ranges::min(topology_.edge_cells[*edge]), limits);
+        std::atomic_ref(segments_[*edge]).store(state);
+        return state == kProved;
     }
 
-    [[nodiscard]] bool proves_segment_at(Index cell, const Limits& limits) const {
+    [[nodiscard]] std::uint8_t state_of_segment(Index cell, const Limits& limits) const {
         const std::optional<EdgeWindow> window = edge_window(topology_, cell);
-        if (!window || !has_rules(*window)) return false;
+        if (!window || !has_rules(*window)) return kOther;
         Eigen::MatrixXd points(window->points.size(), 3);
         for (std::size_t p = 0; p < window->points.size(); ++p) {
             const Vec3 x = window->points[p] == kNone ? Vec3(0.0) : place(cell, window->points[p]);
@@ -230,9 +338,12 @@ private:
                 2 * points.middleRows(last * layer, layer) - points.middleRows(before * layer, layer);
         }
         constexpr int kHalvings = 6;
-        std::vector<DividedSegment> divided;
-        const DividedSegment whole{&segment_rules(scheme_, window->cells), std::move(points), 3 * limits.error};
-        return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
+        const auto proves = [&](double error) {
+            std::vector<DividedSegment> divided;
+            const DividedSegment whole{&segment_rules(scheme_, window->cells), points, 3 * error};
+            return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
+        };
+        return state_of(mesh_.cells[cell][0], window->points, limits, proves);
     }
 
     // What was found for a point holds for all cells at it, so it is kept.
@@ -241,21 +352,22 @@ private:
             if (is_grid_[p] != 0) continue;
             const std::uint8_t known = std::atomic_ref(points_[p]).load();
             if (known == kProved) return true;
-            if (known == kOther) continue;
-            const bool is_proved = proves(p, cell, limits);
-            std::atomic_ref(points_[p]).store(is_proved ? kProved : kOther);
-            if (is_proved) return true;
+            if (known != kUnknown) continue;
+            const std::uint8_t state = state_of_point(p, cell, limits);
+            std::atomic_ref(points_[p]).store(state);
+            if (state == kProved) return true;
         }
         return false;
     }
 
-    [[nodiscard]] bool proves(Index point, Index cell, const Limits& limits) const {
-        if (is_inside_straight_edge(point)) return false;  // the segments on both sides are proved by themselves
+    [[nodiscard]] std::uint8_t state_of_point(Index point, Index cell, const Limits& limits) const {
+        if (is_inside_straight_edge(point)) return kOther;  // the segments on both sides are proved by themselves
         const std::optional<PointWindow> window = point_window(topology_, point, cell);
-        if (!window) return false;
+        if (!window) return kOther;
         std::vector<Vec3> points;
         for (const Index p : window->points) points.push_back(mesh_.points[p] - mesh_.points[point]);
-        return proves_point(link_kind(scheme_, window->link), points, limits.error);
+        const LinkKind& kind = link_kind(scheme_, window->link);
+        return state_of(point, window->points, limits, [&](double error) { return proves_point(kind, points, error); });
     }
 
     [[nodiscard]] bool is_inside_straight_edge(Index point) const {
@@ -266,7 +378,8 @@ private:
         });
     }
 
-    static constexpr std::uint8_t kUnknown = 0, kProved = 1, kOther = 2;
+    // kMoves: it would be proved if it did not move
+    static constexpr std::uint8_t kUnknown = 0, kProved = 1, kOther = 2, kMoves = 3;
 
     const HexMesh& mesh_;
     Scheme scheme_;
@@ -312,12 +425,23 @@ FoldChecker::FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh
     cells_.resize(mesh_.cells.size());
 }
 
+void FoldChecker::move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, bool in_parts) {
+    mesh_.points = std::move(middle);
+    mesh_.attributes = {{"motion", 3, {}}};
+    mesh_.attributes[0].values.reserve(3 * motion.size());
+    for (const Vec3& m : motion) mesh_.attributes[0].values.insert(mesh_.attributes[0].values.end(), {m.x, m.y, m.z});
+    in_parts_of_time_ = in_parts;
+}
+
 void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
     for (const Index cell : cells) cells_[cell] = {};
     std::vector<OpenCell> irregular;
     {
         const Grids grids(mesh_, scheme_.kind);
-        const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), 0, effort};
+        // Points between two meshes are rounded.
+        constexpr double kOfTime = 4 * std::numeric_limits<double>::epsilon();
+        const double error = mesh_.attributes.empty() ? 0 : kOfTime * largest_coordinate(mesh_);
+        const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), error, effort, in_parts_of_time_};
         constexpr std::size_t kRun = std::size_t{1} << 13;
         std::vector<std::optional<PartResult>> results;
         for (std::size_t begin = 0; begin < cells.size(); begin += kRun) {
@@ -330,13 +454,14 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
                 if (results[k]) {
                     add(cell, *results[k]);
                 } else {
+                    cells_[cell].moves = cells_[cell].moves || grids.is_open_for_motion(cell);
                     irregular.push_back({cell, cell, {}});
                 }
             }
         }
     }
     descend_together(irregular, effort == FoldEffort::Verdict ? FoldEffort::Witness : effort);
-    if (effort == FoldEffort::Whole) sample(cells);
+    if (effort == FoldEffort::Whole && mesh_.attributes.empty()) sample(cells);
     if (effort != FoldEffort::Verdict) return;
     // What remains is decided after all where no descendant is irregular.
     std::erase_if(irregular, [&](const OpenCell& at) { return cells_[at.control].fold || cells_[at.control].irregular > 0; });
@@ -357,6 +482,7 @@ void FoldChecker::add(Index control, const PartResult& result, int level) {
     CellState& cell = cells_[control];
     cell.open += result.open;
     cell.tests += result.tests;
+    cell.moves = cell.moves || result.moves;
     tests_ += result.tests;
     cell.deepest = std::max(cell.deepest, level + result.deepest);
     if (result.fold && !cell.fold) {
@@ -379,7 +505,7 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
     // Each level sums up to some tens of products of coordinates.
     constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
     const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
-                        kOfLevel * (level + 1) * largest_coordinate(fine), effort};
+                        kOfLevel * (level + 1) * largest_coordinate(fine), effort, in_parts_of_time_};
     const Grids grids(fine, scheme_.kind);
     std::vector<std::optional<PartResult>> results(8 * open.size());
     const auto child_of = [&](std::size_t n) {
@@ -397,6 +523,8 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
         if (results[n]) {
             add(child.control, *results[n], level + 1);
         } else {
+            CellState& state = cells_[child.control];
+            state.moves = state.moves || grids.is_open_for_motion(child.cell);
             next.push_back(child);
         }
     }
@@ -425,6 +553,16 @@ FoldVerdict FoldChecker::verdict(Index number) const {
            : cell.irregular > 0 ? FoldVerdict::Irregular
            : cell.open > 0      ? FoldVerdict::Open
                                 : FoldVerdict::Proved;
+}
+
+void FoldChecker::count_kinds(const std::vector<FoldVerdict>& verdicts, FoldReport& report) const {
+    std::optional<Topology> topology;
+    for (Index c = 0; c < verdicts.size(); ++c) {
+        if (verdicts[c] != FoldVerdict::Open && verdicts[c] != FoldVerdict::Irregular) continue;
+        if (verdicts[c] == FoldVerdict::Irregular && !topology) topology = build_topology(mesh_);
+        const UndecidedKind kind = verdicts[c] == FoldVerdict::Open ? UndecidedKind::Regular : kind_of_cell(*topology, c);
+        ++report.undecided_kinds[static_cast<std::size_t>(kind)];
+    }
 }
 
 FoldCheck FoldChecker::found() const {
@@ -465,6 +603,7 @@ FoldCheck FoldChecker::found() const {
         report.open_volume += cell.open;
         report.irregular_volume += cell.irregular;
     }
+    count_kinds(check.verdicts, report);
     if (size > 0) report.sampled.least = least * static_cast<double>(report.sampled.places) / size;
     place(check.places);
     return check;
@@ -501,6 +640,13 @@ Facts facts_of(const FoldReport& report) {
     cells["folded"] = report.folded;
     cells["undecided"] = undecided;
     cells["irregular"] = report.irregular;
+    if (undecided > 0) {
+        Facts& kinds = facts.group("undecided_kinds");
+        for (const auto& row : NameTable<UndecidedKind>::rows) {
+            const std::size_t count = report.undecided_kinds[static_cast<std::size_t>(row.value)];
+            if (count > 0) kinds[std::string(row.name)] = count;
+        }
+    }
     facts["open_volume"] = report.open_volume + report.irregular_volume;
     Facts& sampled = facts.group("sampled");
     sampled["cells"] = report.sampled.cells;

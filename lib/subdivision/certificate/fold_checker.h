@@ -30,6 +30,12 @@ public:
     /// As many new points.
     void move(const std::vector<Vec3>& points) { mesh_.points = points; }
 
+    /// Points that move straight: at time s from −1 to 1 they are at `middle` + s `motion`. A cell is proved if it is at all of
+    /// these times, and folded if it is in the middle of them.
+    ///
+    /// in_parts: gives cells up that move much, as they will be checked in shorter times
+    void move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, bool in_parts);
+
     /// Checks some cells anew, ascending.
     void check(std::span<const Index> cells, FoldEffort effort);
 
@@ -42,6 +48,9 @@ public:
     /// What is known of all cells.
     [[nodiscard]] FoldCheck found() const;
 
+    /// Counts the kinds of the cells that are not decided.
+    void count_kinds(const std::vector<FoldVerdict>& verdicts, FoldReport& report) const;
+
     /// What is known of a cell.
     struct CellState {
         std::optional<FoldPlace> fold;
@@ -49,9 +58,13 @@ public:
         double irregular = 0;  ///< the volume that touches irregular edges and is not decided
         std::size_t tests = 0;
         int deepest = 0;
+        bool moves = false;  ///< it may be proved for shorter times
         CellSamples samples;
     };
     [[nodiscard]] const std::vector<CellState>& states() const { return cells_; }
+
+    /// Finds the positions of places in the cells.
+    void place(std::vector<FoldPlace>& places) const;
 
     /// Goes back to what was known with points that have been moved to again.
     void restore(std::vector<CellState> states) { cells_ = std::move(states); }
@@ -73,13 +86,13 @@ private:
     void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);
     void descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort);
     void sample(std::span<const Index> cells);
-    void place(std::vector<FoldPlace>& places) const;
 
-    HexMesh mesh_;
+    HexMesh mesh_;  // its only attribute, if any, is the motion of its points
     const FoldOptions& options_;
     SchemeOptions scheme_;
     std::vector<CellState> cells_;
     std::size_t tests_ = 0;
+    bool in_parts_of_time_ = false;
 };
 
 }  // namespace subvol::detail

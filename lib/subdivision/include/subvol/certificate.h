@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +32,20 @@ struct NameTable<FoldVerdict> {
                                                  {FoldVerdict::Irregular, "irregular", "undecided near an irregular edge"}};
 };
 
+/// What keeps a cell undecided: nothing but the tests allowed, or the first of what is irregular at its corners.
+enum class UndecidedKind : std::uint8_t { Regular, SharpFace, BoundaryEdge, CrowdedEdge, IrregularPoint, IrregularEdge };
+
+template <>
+struct NameTable<UndecidedKind> {
+    static constexpr Name<UndecidedKind> rows[] = {
+        {UndecidedKind::Regular, "regular", "its surroundings are a grid"},
+        {UndecidedKind::SharpFace, "sharp_face", "it touches a sharp face inside the mesh"},
+        {UndecidedKind::BoundaryEdge, "boundary_edge", "it touches an edge of the boundary with more than two cells"},
+        {UndecidedKind::CrowdedEdge, "crowded_edge", "it touches an edge inside with more than eight cells"},
+        {UndecidedKind::IrregularPoint, "irregular_point", "it touches a point where irregular edges meet or end"},
+        {UndecidedKind::IrregularEdge, "irregular_edge", "it touches an edge inside with other than four cells"}};
+};
+
 struct FoldOptions {
     SchemeOptions scheme{};                     ///< as for all calls; MCQ is certified with its tension of 1/16 alone
     int levels = 5;                             ///< how often a cell is cut into eight where one test does not decide
@@ -43,6 +59,14 @@ struct FoldOptions {
 /// The options without those of the scheme.
 [[nodiscard]] std::vector<Option> options_of(FoldOptions& options);
 
+struct FoldMotionOptions {
+    FoldOptions folds{};
+    int time_levels = 5;  ///< how often the time is halved where cells are not decided
+};
+
+/// The options without those of folds.
+[[nodiscard]] std::vector<Option> options_of(FoldMotionOptions& options);
+
 /// A place where the limit is folded: uvw in the cell, its position, and det ∂x/∂u there.
 struct FoldPlace {
     Index cell = 0;
@@ -50,6 +74,7 @@ struct FoldPlace {
     Vec3 position{0.0};
     double determinant = 0;
     bool sampled = false;  ///< this was found by sampling, where nothing is proved
+    double time = 0;       ///< between two meshes: from 0 to 1
 };
 
 struct FoldReport {
@@ -58,6 +83,8 @@ struct FoldReport {
         double least = 0;
     };
     std::size_t proved = 0, folded = 0, open = 0, irregular = 0;  ///< numbers of cells
+    /// How many cells of each kind are not decided
+    std::array<std::size_t, std::size(NameTable<UndecidedKind>::rows)> undecided_kinds{};
     double open_volume = 0, irregular_volume = 0;  ///< of the cells that are not decided, the part that stays open, in cells
     std::size_t tests = 0;                         ///< tests in all
     int deepest = 0;                               ///< the level of the smallest part that was tested
@@ -68,7 +95,8 @@ struct FoldReport {
 };
 
 /// "verdict" (sound, folded or undecided), "cells" with proved, folded, undecided and irregular (those of the undecided that
-/// are near irregular edges), "open_volume" of the undecided, and "sampled" with its members.
+/// are near irregular edges), "undecided_kinds" with those that there are, "open_volume" of the undecided, and "sampled" with
+/// its members.
 [[nodiscard]] Facts facts_of(const FoldReport& report);
 
 struct FoldCheck {
@@ -91,5 +119,14 @@ struct FoldCheck {
 /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
 /// cost:   parallel, about 40 µs a test and 1 ms for each cell that is sampled; the same result for any number of threads
 [[nodiscard]] FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options = {});
+
+/// Decides for each cell whether its limit folds at any time while all points move straight from one mesh to another. Cells are
+/// proved for all times, and folded at a time that is known; parts that stay open are those of volume and time. Nothing is
+/// sampled, so a fold may be missed where nothing is proved: such cells are open or irregular.
+///
+/// throws: Error(InvalidInput) as `check_folds`, or if the cells, creases or sharp faces differ
+/// cost:   as `check_folds`, for each stretch of time into which the motion has to be divided; rotations of half a radian are
+///         few, but at irregular edges hundreds
+[[nodiscard]] FoldCheck check_folds_between(const HexMesh& before, const HexMesh& after, const FoldMotionOptions& options = {});
 
 }  // namespace subvol
