@@ -60,6 +60,12 @@ std::vector<Option> keywords_of(FoldOptions& options) {
     return scheme_and(options.scheme, options_of(options));
 }
 
+std::vector<Option> keywords_of(FoldMotionOptions& options) {
+    std::vector<Option> all = keywords_of(options.folds);
+    std::ranges::move(options_of(options), std::back_inserter(all));
+    return all;
+}
+
 std::vector<Option> keywords_of(MendOptions& options) {
     std::vector<Option> all = keywords_of(options.folds);
     std::ranges::move(options_of(options), std::back_inserter(all));
@@ -417,12 +423,13 @@ py::dict dict_of(FoldCheck found) {
     for (const FoldVerdict verdict : found.verdicts) verdicts.push_back(static_cast<std::uint8_t>(verdict));
     std::vector<Vec3> parameters, positions;
     std::vector<std::int64_t> cells;
-    std::vector<double> determinants;
+    std::vector<double> determinants, times;
     for (const FoldPlace& at : found.places) {
         cells.push_back(static_cast<std::int64_t>(at.cell));
         parameters.push_back(at.uvw);
         positions.push_back(at.position);
         determinants.push_back(at.determinant);
+        times.push_back(at.time);
     }
     py::array_t<bool> sampled(length(found.places.size()));
     for (std::size_t k = 0; k < found.places.size(); ++k) sampled.mutable_at(length(k)) = found.places[k].sampled;
@@ -435,6 +442,7 @@ py::dict dict_of(FoldCheck found) {
     result["positions"] = owned(std::move(positions));
     result["determinants"] = owned(std::move(determinants), {folded});
     result["sampled"] = std::move(sampled);
+    result["times"] = owned(std::move(times), {folded});
     result["tests"] = found.report.tests;
     result["places"] = found.report.sampled.places;
     result["least"] = found.report.sampled.least;
@@ -447,6 +455,16 @@ py::dict check_folds_of(const HexMesh& mesh, const py::object& progress, const p
     return dict_of(result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return check_folds(mesh, options);
+    }));
+}
+
+py::dict check_folds_between_of(const HexMesh& before, const HexMesh& after, const py::object& progress,
+                                const py::kwargs& keywords) {
+    FoldMotionOptions options;
+    set_options(keywords_of(options), keywords);
+    return dict_of(result_of(progress, [&](Progress* listener) {
+        options.folds.progress = listener;
+        return check_folds_between(before, after, options);
     }));
 }
 
@@ -580,6 +598,8 @@ void bind_measure(py::module_& module) {
     module.def("read_surface", &read_triangles, py::arg("path"));
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<FoldOptions>(module, "check_folds");
+    module.def("check_folds_between", &check_folds_between_of, py::arg("before"), py::arg("after"), py::arg("progress"));
+    describe_call<FoldMotionOptions>(module, "check_folds_between");
     module.def("mend_folds", &mend_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<MendOptions>(module, "mend_folds");
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("levels"), py::arg("progress"));

@@ -208,8 +208,8 @@ def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: P
 @dataclass(frozen=True)
 class FoldCheck:
     """verdicts: (cells,) 0 proved, 1 folded, 2 open, 3 irregular; open: (cells,), the part of each cell that is not decided; of the
-    folded cells, in their order: cells, parameters (n,3), positions (n,3), determinants (n,) and sampled (n,): found by sampling, where
-    no test decided; tests: in all; places: that were sampled in undecided cells; least: the least determinant there beside the mean"""
+    folded cells, in their order: cells, parameters (n,3), positions (n,3), determinants (n,), sampled (n,): found by sampling, where
+    no test decided, and times (n,): between two meshes from 0 to 1, else 0; tests: in all; places: that were sampled in undecided cells; least: the least determinant there beside the mean"""
 
     verdicts: npt.NDArray[np.uint8]
     open: npt.NDArray[np.float64]
@@ -218,6 +218,7 @@ class FoldCheck:
     positions: npt.NDArray[np.float64]
     determinants: npt.NDArray[np.float64]
     sampled: npt.NDArray[np.bool_]
+    times: npt.NDArray[np.float64]
     tests: int
     places: int
     least: float
@@ -236,6 +237,17 @@ def check_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> 
     """
     with listening(progress) as listener:
         return FoldCheck(**_core.check_folds(mesh, listener, **options))
+
+
+@described
+def check_folds_between(before: HexMesh, after: HexMesh, *, progress: Progress = None, **options: Any) -> FoldCheck:
+    """Decides for each cell whether its limit folds at any time while all points move straight from one mesh to another of the same
+    cells. `open` is the part of the cell and of the time that is not decided; nothing is sampled.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        return FoldCheck(**_core.check_folds_between(before, after, listener, **options))
 
 
 @described

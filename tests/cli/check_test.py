@@ -44,6 +44,59 @@ class Check(InFolder):
             code, found = self.check("a.mesh", "--scheme", scheme)
             self.assertEqual((code, found["verdict"]), (0, "sound"))
 
+    def series(self, *moves):
+        """Steps of a box, in which each point is where a function puts it; at times 0, 2, 4, …"""
+        for k, move in enumerate(moves):
+            (self.folder / f"{k}.mesh").write_text(box(3, move))
+        steps = "".join(f'<DataSet timestep="{2 * k}" file="{k}.mesh"/>' for k in range(len(moves)))
+        (self.folder / "a.pvd").write_text(f'<VTKFile type="Collection"><Collection>{steps}</Collection></VTKFile>')
+
+    def test_a_series_is_checked_at_its_steps_and_between(self):
+        as_it_is = lambda x, y, z: (x, y, z)
+        turned = lambda x, y, z: (-y + 9, x, z)
+        # From there to −2 and −3 times along two axes: sound at the end, (1 − 3t)(1 − 4t) between.
+        pulled = lambda x, y, z: (-2 * x, -3 * y, z)
+        self.series(as_it_is, turned, as_it_is, pulled)
+        for scheme in "linear", "mcq", "bsxw", "cc":
+            with self.subTest(scheme):
+                code, found = self.check("a.pvd", "--series", "--scheme", scheme)
+                self.assertEqual((code, found["verdict"]), (1, "folded"))
+                self.assertEqual([(s["step"], s["time"], s["verdict"]) for s in found["steps"]], [(k, 2 * k, "sound") for k in range(4)])
+                self.assertEqual([(b["from"], b["to"], b["times"], b["verdict"]) for b in found["between"]],
+                                 [(0, 1, [0, 2], "sound"), (1, 2, [2, 4], "sound"), (2, 3, [4, 6], "folded")])
+                for place in found["between"][2]["places"]:
+                    t = (place["time"] - 4) / 2
+                    self.assertLess((1 - 3 * t) * (1 - 4 * t), 0)
+                    self.assertLess(place["determinant"], 0)
+        code, found = self.check("a.pvd", "--series", "--step", "0-2")
+        self.assertEqual((code, found["verdict"], len(found["steps"])), (0, "sound", 3))
+        lines = subvol("check", "a.pvd", "--series", folder=self.folder).out.splitlines()
+        self.assertIn("between 0 and 1: 27 proved", lines)
+        self.assertEqual(lines[-1].split(), ["verdict", "folded"])
+
+    def test_kinds_of_undecided_cells(self):
+        _, found = self.check("model:ball:3")
+        self.assertEqual(sum(found["undecided_kinds"].values()), found["cells"]["undecided"])
+        self.assertEqual(set(found["undecided_kinds"]), {"irregular_edge", "irregular_point"})
+        # Half a turn passes a determinant of 0.
+        self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (-x, -y, z))
+        code, found = self.check("a.pvd", "--series", "--time-levels", "2")
+        self.assertEqual((code, found["verdict"], found["between"][0]["undecided_kinds"]), (0, "undecided", {"regular": 27}))
+
+    def test_what_is_no_series(self):
+        self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (x, y, z))
+        for words, said in ((["0.mesh", "--series"], "it has one step"), (["a.pvd", "--series", "--step", "1"], "nothing moves in one step"),
+                            (["a.pvd", "--series", "--time", "1"], "nothing moves at one time"), (["a.pvd", "--time-levels", "2"], "--series"),
+                            (["a.pvd", "--series", "--mend", "-o", "b.vtu"], "cannot be given together")):
+            with self.subTest(words):
+                done = subvol("check", *words, folder=self.folder)
+                self.assertEqual((done.code, done.out), (2, ""))
+                self.assertIn(said, done.err)
+        (self.folder / "1.mesh").write_text(box(2, lambda x, y, z: (x, y, z)))
+        done = self.run_ok("check", "a.pvd", "--series", "--json")
+        self.assertIn("the cells change between the steps 0 and 1: nothing is said between them", done.json()["warnings"])
+        self.assertEqual((done.json()["verdict"], done.json()["between"]), ("undecided", []))
+
     def test_info_counts_them_on_request(self):
         (self.folder / "a.mesh").write_text(box(7, lambda x, y, z: (x + {3: .85, 5: -.85}.get(x, 0), y, z)))
         _, found = self.check("a.mesh")

@@ -147,6 +147,12 @@ def test_folds_are_proved_or_placed():
     sound = subvol.check_folds(subvol.model("twist", 6))
     assert sound.verdict == "sound" and not sound.verdicts.any() and not sound.open.any()
     assert sound.cells.size == 0 and sound.positions.shape == (0, 3)
+    twist = subvol.model("twist", 6)
+    pulled = subvol.HexMesh(np.array(twist.points) * (-2, -3, 1), twist.cells)
+    through = subvol.check_folds_between(twist, pulled, time_levels=4)
+    assert (subvol.check_folds(pulled).verdict, through.verdict) == ("sound", "folded")
+    assert np.all((1 - 3 * through.times) * (1 - 4 * through.times) < 0)  # the determinant between, in closed form
+    assert subvol.check_folds_between(twist, twist).verdict == "sound"
     ball = subvol.check_folds(subvol.model("ball", 3), irregular_levels=1)
     assert ball.verdict == "undecided" and set(ball.verdicts) == {0, 3} and 0 < ball.open.max() <= 1
     twist = subvol.model("twist", 4)

@@ -90,13 +90,14 @@ struct FoldChecker::PartResult {
     bool moves = false;  ///< it may be proved for shorter times
 };
 
-/// limits of the search in a part. error: of the points' coordinates; in_parts_of_time: leaves what moves much to shorter times
+/// limits of the search in a part. error: of the points' coordinates; halvings: how often the time may yet be
+/// halved, to which what moves much is left
 struct FoldChecker::Limits {
     int levels;
     std::size_t tests;
     double error;
     FoldEffort effort;
-    bool in_parts_of_time = false;
+    int halvings = 0;
 };
 
 // Level by level, so that large folds are found before small parts are proved.
@@ -141,7 +142,7 @@ FoldChecker::PartResult FoldChecker::decide_part(Part part, const Limits& limits
             if (decision.verdict == PartVerdict::Proved) continue;
             if constexpr (requires { at.norm_of_motion(); }) {
                 constexpr double kMuch = 0.25, kLittle = 0.02;
-                const double motion = limits.in_parts_of_time ? at.norm_of_motion() : 0;
+                const double motion = limits.halvings > 0 ? at.norm_of_motion() : 0;
                 result.moves = result.moves || motion > kMuch || (level == limits.levels && motion > kLittle);
                 if (motion > kMuch) {
                     result.open = whole;
@@ -245,7 +246,8 @@ private:
         constexpr double kMost = 10;  // 1 / (1 − |N|)
         const double motion = error_of_motion(about, points);
         if (std::isfinite(motion) && proves(motion + kMost * limits.error)) return kProved;
-        return proves(limits.error) ? kMoves : kOther;
+        const double least = std::ldexp(motion, -limits.halvings);  // motion is proportional to time, or falls faster
+        return limits.halvings > 0 && std::isfinite(motion) && proves(least + kMost * limits.error) ? kMoves : kOther;
     }
 
     [[nodiscard]] std::optional<PartResult> decide_window(Index cell, const PartFrame& frame, const Limits& limits) const {
@@ -425,12 +427,12 @@ FoldChecker::FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh
     cells_.resize(mesh_.cells.size());
 }
 
-void FoldChecker::move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, bool in_parts) {
+void FoldChecker::move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, int halvings) {
     mesh_.points = std::move(middle);
     mesh_.attributes = {{"motion", 3, {}}};
     mesh_.attributes[0].values.reserve(3 * motion.size());
     for (const Vec3& m : motion) mesh_.attributes[0].values.insert(mesh_.attributes[0].values.end(), {m.x, m.y, m.z});
-    in_parts_of_time_ = in_parts;
+    halvings_ = halvings;
 }
 
 void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
@@ -441,7 +443,7 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
         // Points between two meshes are rounded.
         constexpr double kOfTime = 4 * std::numeric_limits<double>::epsilon();
         const double error = mesh_.attributes.empty() ? 0 : kOfTime * largest_coordinate(mesh_);
-        const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), error, effort, in_parts_of_time_};
+        const Limits limits{options_.levels, static_cast<std::size_t>(options_.tests), error, effort, halvings_};
         constexpr std::size_t kRun = std::size_t{1} << 13;
         std::vector<std::optional<PartResult>> results;
         for (std::size_t begin = 0; begin < cells.size(); begin += kRun) {
@@ -505,7 +507,7 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
     // Each level sums up to some tens of products of coordinates.
     constexpr double kOfLevel = 256 * std::numeric_limits<double>::epsilon();
     const Limits limits{std::max(0, options_.levels - level - 1), static_cast<std::size_t>(std::max(1, options_.tests / 8)),
-                        kOfLevel * (level + 1) * largest_coordinate(fine), effort, in_parts_of_time_};
+                        kOfLevel * (level + 1) * largest_coordinate(fine), effort, halvings_};
     const Grids grids(fine, scheme_.kind);
     std::vector<std::optional<PartResult>> results(8 * open.size());
     const auto child_of = [&](std::size_t n) {

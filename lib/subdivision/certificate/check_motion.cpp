@@ -32,6 +32,7 @@ public:
         : before_(before), after_(after), levels_(options.time_levels), checker_(before, options.folds) {
         result_.verdicts.assign(before.cells.size(), FoldVerdict::Proved);
         result_.open.assign(before.cells.size(), 0);
+        irregular_.assign(before.cells.size(), 0);
     }
 
     FoldCheck run() {
@@ -40,12 +41,19 @@ public:
         std::iota(stretches[0].cells.begin(), stretches[0].cells.end(), Index{0});
         for (int level = 0; !stretches.empty(); ++level) {
             std::vector<Stretch> next;
-            for (Stretch& stretch : stretches) check(stretch, level < levels_, next);
+            for (Stretch& stretch : stretches) check(stretch, levels_ - level, next);
             stretches = std::move(next);
         }
         std::ranges::sort(result_.places, {}, &FoldPlace::cell);
-        for (const FoldVerdict verdict : result_.verdicts) {
-            FoldReport& report = result_.report;
+        FoldReport& report = result_.report;
+        for (Index c = 0; c < result_.verdicts.size(); ++c) {
+            const FoldVerdict verdict = result_.verdicts[c];
+            if (verdict == FoldVerdict::Folded) {
+                result_.open[c] = irregular_[c] = 0;
+            }
+            report.open_volume += result_.open[c];
+            report.irregular_volume += irregular_[c];
+            result_.open[c] += irregular_[c];
             ++(verdict == FoldVerdict::Folded      ? report.folded
                : verdict == FoldVerdict::Irregular ? report.irregular
                : verdict == FoldVerdict::Open      ? report.open
@@ -56,7 +64,7 @@ public:
     }
 
 private:
-    void check(Stretch& stretch, bool divides, std::vector<Stretch>& next) {
+    void check(Stretch& stretch, int halvings, std::vector<Stretch>& next) {
         std::erase_if(stretch.cells, [&](Index c) { return result_.verdicts[c] == FoldVerdict::Folded; });
         if (stretch.cells.empty()) return;
         const double middle = (stretch.begin + stretch.end) / 2, half = (stretch.end - stretch.begin) / 2;
@@ -65,7 +73,7 @@ private:
             points[p] = (1 - middle) * before_.points[p] + middle * after_.points[p];
             motion[p] = half * (after_.points[p] - before_.points[p]);
         }
-        checker_.move_straight(std::move(points), motion, divides);
+        checker_.move_straight(std::move(points), motion, halvings);
         const std::size_t tests = checker_.tests();
         checker_.check(stretch.cells, FoldEffort::Whole);
         result_.report.tests += checker_.tests() - tests;
@@ -78,10 +86,9 @@ private:
             if (verdict == FoldVerdict::Proved) continue;
             if (verdict == FoldVerdict::Folded) {
                 result_.verdicts[c] = verdict;
-                result_.open[c] = 0;
                 places.push_back(*state.fold);
                 places.back().time = middle;
-            } else if (divides && state.moves) {
+            } else if (halvings > 0 && state.moves) {
                 open.push_back(c);
             } else {
                 leave(c, verdict, state, 2 * half);
@@ -96,15 +103,15 @@ private:
 
     void leave(Index cell, FoldVerdict verdict, const FoldChecker::CellState& state, double time) {
         result_.verdicts[cell] = std::max(result_.verdicts[cell], verdict);  // irregular if it is in one of the stretches
-        result_.open[cell] += (state.open + state.irregular) * time;
-        result_.report.open_volume += state.open * time;
-        result_.report.irregular_volume += state.irregular * time;
+        result_.open[cell] += state.open * time;
+        irregular_[cell] += state.irregular * time;
     }
 
     const HexMesh &before_, &after_;
     int levels_;
     FoldChecker checker_;
     FoldCheck result_;
+    std::vector<double> irregular_;  // volume near irregular edges that is open, of each cell
 };
 
 }  // namespace

@@ -33,8 +33,8 @@ public:
     /// Points that move straight: at time s from −1 to 1 they are at `middle` + s `motion`. A cell is proved if it is at all of
     /// these times, and folded if it is in the middle of them.
     ///
-    /// in_parts: gives cells up that move much, as they will be checked in shorter times
-    void move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, bool in_parts);
+    /// halvings: how often the time may be halved; then cells that move much are left to shorter times
+    void move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, int halvings);
 
     /// Checks some cells anew, ascending.
     void check(std::span<const Index> cells, FoldEffort effort);
@@ -92,7 +92,7 @@ private:
     SchemeOptions scheme_;
     std::vector<CellState> cells_;
     std::size_t tests_ = 0;
-    bool in_parts_of_time_ = false;
+    int halvings_ = 0;  // of the time that may follow
 };
 
 }  // namespace subvol::detail

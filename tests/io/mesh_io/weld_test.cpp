@@ -64,6 +64,13 @@ TEST_F(Weld, JoinsPointsWithinATolerance) {
     EXPECT_EQ(inspect(read(two_boxes(1.1e-6), {.weld = 1e-6}).mesh).boundary_faces, 32u);
 }
 
+// Where the cubes of a tolerance have numbers so large that adding 1 changes nothing.
+TEST_F(Weld, FarAwayPointsAreWelded) {
+    HexMesh mesh = two_boxes(0);
+    for (Vec3& x : mesh.points) x = x * 1e20 + Vec3(1e22);
+    EXPECT_THAT(read(mesh, {.weld = 1e-3}).warnings, ElementsAre(HasSubstr("9 points welded")));
+}
+
 TEST_F(Weld, MinusZeroIsZero) {
     HexMesh mesh = two_boxes(0);
     for (std::size_t p = 0; p < mesh.points.size() / 2; ++p) {

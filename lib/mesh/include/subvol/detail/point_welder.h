@@ -64,10 +64,16 @@ private:
         const Cube low = cube_of(points_[p] - reach), high = cube_of(points_[p] + reach);
         if (low == high) return first_in(p, low);
         Index first = kNone;
-        for (double x = low[0]; x <= high[0]; ++x) {
-            for (double y = low[1]; y <= high[1]; ++y) {
-                for (double z = low[2]; z <= high[2]; ++z) first = std::min(first, first_in(p, {x, y, z}));
+        for (std::size_t k = 0; k < 8; ++k) {  // at most two along each axis; far away, adding 1 does not lead to the next
+            const std::array<std::size_t, 3> upper{k & 1, k >> 1 & 1, k >> 2};
+            Cube cube = low;
+            bool is_new = true;
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (upper[a] == 0) continue;
+                cube[a] = high[a];
+                is_new = is_new && low[a] != high[a];
             }
+            if (is_new) first = std::min(first, first_in(p, cube));
         }
         return first;
     }
