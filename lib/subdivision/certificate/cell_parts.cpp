@@ -300,9 +300,7 @@ PartDerivatives GridPart::derivatives(const Mat3& h) const {
         constexpr std::size_t kCoefficients = 27;
         part.columns[c] = {{2, 2, 2}, {products.begin(), products.begin() + kCoefficients}};
         axis.kept.multiply({products.data() + kCoefficients, axis.polynomial.rows() - kCoefficients}, near);
-        Vec3 most(0.0);
-        for (std::size_t d = 0; d < count; ++d) most = glm::max(most, glm::abs(differences[d] - near[d]));
-        part.rest[static_cast<int>(c)] = axis.kappa * most;
+        part.rest[static_cast<int>(c)] = axis.kappa * largest_difference({differences.data(), count}, {near.data(), count});
     }
     return part;
 }
