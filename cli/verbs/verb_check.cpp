@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// The verb `check`: whether the limit folds, at one step, at all steps of a series and between them, and the mesh that is
+// mended.
+//
+//     mesh ─► verdict of each cell ─► mended mesh
+//     steps ─► verdicts of each step ─► and of the time from the step before, where the cells are the same
 #include <CLI/CLI.hpp>
 #include <algorithm>
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "distortion.h"
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/transposed_table.h"
@@ -14,30 +15,6 @@
 namespace subvol::detail {
 
 namespace {
-
-/// A corner of a cell: its edges in sides as the columns of a matrix, with determinant D. Its distortion is
-///
-///     |J|² / χ^⅔ + ½ (D² + 1) / χ,      χ = (D + √(ε² + D²)) / 2
-///
-/// which is least for a cube and, where ε is 0, infinite where D is not positive. With ε it is finite there and draws D
-/// upwards.
-struct Distortion {
-    double value;
-    Mat3 gradient;  // by the edges
-};
-
-Distortion distortion_of(const Mat3& j, double epsilon) {
-    constexpr double kSize = 0.5;
-    const Mat3 cofactors(glm::cross(j[1], j[2]), glm::cross(j[2], j[0]), glm::cross(j[0], j[1]));
-    const double d = glm::dot(j[0], cofactors[0]);
-    const double root = std::sqrt(epsilon * epsilon + d * d);
-    const double chi = 0.5 * (d + root), slope = chi / root;
-    const double square = glm::dot(j[0], j[0]) + glm::dot(j[1], j[1]) + glm::dot(j[2], j[2]);
-    const double power = std::pow(chi, -2.0 / 3.0);
-    const double size = (d * d + 1) / chi;
-    const double by_d = -2.0 / 3.0 * square * power / chi * slope + kSize * (2 * d / chi - size / chi * slope);
-    return {square * power + kSize * size, 2 * power * j + by_d * cofactors};
-}
 
 Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* points) {
     const Vec3& x = points[cell[corner]];
@@ -84,18 +61,15 @@ public:
         std::vector<double> slopes =
             parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.children_.cells[c];
+                CornerCoordinates corners, by_corners;
+                for (std::size_t k = 0; k < 8; ++k) {
+                    const Vec3 x = scales_[c] * children[cell[k]];
+                    for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = x[static_cast<int>(axis)];
+                }
+                to.back() += part * distortion_of(corners, epsilon_, by_corners);
                 const double scale = scales_[c] * part;
                 for (std::size_t k = 0; k < 8; ++k) {
-                    const Distortion at = distortion_of(scales_[c] * edges_at(cell, k, children.data()), epsilon_);
-                    to.back() += at.value * part;
-                    for (std::size_t e = 0; e < 3; ++e) {
-                        const Index end = cell[kCornerNeighbors[k][e]];
-                        for (int axis = 0; axis < 3; ++axis) {
-                            const double slope = scale * at.gradient[static_cast<int>(e)][axis];
-                            to[3 * end + static_cast<std::size_t>(axis)] += slope;
-                            to[3 * cell[k] + static_cast<std::size_t>(axis)] -= slope;
-                        }
-                    }
+                    for (std::size_t axis = 0; axis < 3; ++axis) to[3 * cell[k] + axis] += scale * by_corners[axis][k];
                 }
             });
         const double distortions = slopes.back();

@@ -390,8 +390,8 @@ private:
     mutable std::vector<std::uint8_t> points_, segments_;
 };
 
-// The cells of `open`, in their order, and then those of two layers around them.
-std::vector<Index> FoldChecker::with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open) {
+// The cells of `open`, in their order, and then those of some layers around them.
+std::vector<Index> FoldChecker::with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open, int layers) {
     std::vector<Index> cells;
     std::vector<std::uint8_t> taken(mesh.cells.size(), 0), met(mesh.points.size(), 0);
     const auto take = [&](Index c) {
@@ -400,7 +400,7 @@ std::vector<Index> FoldChecker::with_neighbors(const HexMesh& mesh, const std::v
     };
     for (const OpenCell& at : open) take(at.cell);
     std::size_t begin = 0;
-    for (int layer = 0; layer < 2; ++layer) {
+    for (int layer = 0; layer < layers; ++layer) {
         for (; begin < cells.size(); ++begin) {
             for (const Index p : mesh.cells[cells[begin]]) met[p] = 1;
         }
@@ -500,7 +500,9 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
         return;
     }
     if (open.empty()) return;
-    const std::vector<Index> around = with_neighbors(mesh, open);
+    // Windows reach two children away, and those of grandchildren need the rules of children two further.
+    const bool is_last = level + 1 == options_.irregular_levels;
+    const std::vector<Index> around = with_neighbors(mesh, open, is_last ? 1 : 2);
     constexpr std::size_t kRefined = 4;  // tests that take as long as to refine a cell
     tests_ += kRefined * around.size();
     const HexMesh fine = refine_cells(mesh, around, {.scheme = scheme_, .levels = 1});

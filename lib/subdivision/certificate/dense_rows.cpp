@@ -5,6 +5,7 @@
 #include "dense_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -41,6 +42,28 @@ void multiply_block(const double* HWY_RESTRICT weights, const double* HWY_RESTRI
     }
 }
 
+void largest_difference(const double* HWY_RESTRICT a, const double* HWY_RESTRICT b, std::size_t count,
+                        double* HWY_RESTRICT most) {
+    const hn::CappedTag<double, 4> d;
+    constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<double, 4>());
+    auto x = hn::Zero(d), y = x, z = x;
+    std::size_t k = 0;
+    for (; k + kStep <= count; k += kStep, a += 3 * kStep, b += 3 * kStep) {
+        hn::Vec<decltype(d)> ax, ay, az, bx, by, bz;
+        hn::LoadInterleaved3(d, a, ax, ay, az);
+        hn::LoadInterleaved3(d, b, bx, by, bz);
+        x = hn::Max(x, hn::Abs(hn::Sub(ax, bx)));
+        y = hn::Max(y, hn::Abs(hn::Sub(ay, by)));
+        z = hn::Max(z, hn::Abs(hn::Sub(az, bz)));
+    }
+    most[0] = hn::GetLane(hn::MaxOfLanes(d, x));
+    most[1] = hn::GetLane(hn::MaxOfLanes(d, y));
+    most[2] = hn::GetLane(hn::MaxOfLanes(d, z));
+    for (; k < count; ++k, a += 3, b += 3) {
+        for (std::size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], std::abs(a[c] - b[c]));
+    }
+}
+
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -48,6 +71,7 @@ HWY_AFTER_NAMESPACE();
 namespace subvol::detail {
 
 HWY_EXPORT(multiply_block);
+HWY_EXPORT(largest_difference);
 
 DenseRows::DenseRows(const Eigen::MatrixXd& matrix)
     : rows_(static_cast<std::size_t>(matrix.rows())), columns_(static_cast<std::size_t>(matrix.cols())) {
@@ -70,6 +94,12 @@ void DenseRows::multiply(std::span<const Vec3> vectors, std::span<Vec3> products
             products[first + r] = {sums[r], sums[kRowsTogether + r], sums[2 * kRowsTogether + r]};
         }
     }
+}
+
+Vec3 largest_difference(std::span<const Vec3> a, std::span<const Vec3> b) {
+    Vec3 most(0.0);
+    if (!a.empty()) HWY_DYNAMIC_DISPATCH(largest_difference)(&a.front().x, &b.front().x, a.size(), &most.x);
+    return most;
 }
 
 }  // namespace subvol::detail

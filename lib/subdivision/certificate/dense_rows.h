@@ -28,4 +28,7 @@ private:
     std::vector<double> blocks_;  // of eight rows, column by column
 };
 
+/// The largest |a − b| of as many vectors, component by component.
+[[nodiscard]] Vec3 largest_difference(std::span<const Vec3> a, std::span<const Vec3> b);
+
 }  // namespace subvol::detail

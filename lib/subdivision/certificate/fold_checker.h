@@ -80,7 +80,7 @@ private:
     class Grids;
     template <class Part>
     [[nodiscard]] static PartResult decide_part(Part part, const Limits& limits);
-    [[nodiscard]] static std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open);
+    [[nodiscard]] static std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open, int layers);
 
     void add(Index control, const PartResult& result, int level = 0);
     void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);

@@ -11,7 +11,9 @@ namespace {
 
 // Rounding: each component of a derivative is a sum of at most 180 products with weights of a sum of magnitudes below 4.5, so
 // that it is within 1e-12 of the largest difference in this component; the rest is to spare. H need not be an exact inverse:
-// any matrix will do whose determinant is certainly positive, as it is where the condition is not extreme.
+// any matrix will do whose determinant is certainly positive, as it is where the condition is not extreme. Points of a window
+// may be multiplied by H before their differences are taken: about one of them they are a few differences long, so that this
+// rounds by less than 1e-13 of the largest one.
 constexpr double kRounding = 3e-12;
 constexpr double kMostCondition = 1e8;
 constexpr double kOfDeterminants = 1e-9;

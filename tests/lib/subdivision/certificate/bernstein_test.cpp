@@ -43,6 +43,14 @@ TEST(Bernstein, DeterminantsAndHalvesAreThoseOfTheValues) {
             const double apart_lower = glm::distance(value_at(lower, u), value_at(columns[0], Vec3(u.x, u.y, u.z / 2)));
             EXPECT_LT(std::max(apart_upper, apart_lower), 1e-14);
         }
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto halves = values_at_halves(columns[c]);
+            for (std::size_t k = 0; k < 27; ++k) {
+                const Vec3 u =
+                    0.5 * Vec3(static_cast<double>(k / 9), static_cast<double>(k / 3 % 3), static_cast<double>(k % 3));
+                EXPECT_LT(glm::distance(halves[k], value_at(columns[c], u)), 1e-14);
+            }
+        }
         EXPECT_EQ(det.corner(1, 0, 1),
                   det.values[(static_cast<std::size_t>(det.degree[0]) * (static_cast<std::size_t>(det.degree[1]) + 1)) *
                                  (static_cast<std::size_t>(det.degree[2]) + 1) +

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <random>
 
 #include "cell_parts.h"
 #include "lib/test_meshes.h"
@@ -112,6 +113,40 @@ TEST(DerivativeForm, CornersAreDerivativesOfTheLimit) {
                 const Mat3 j((x[0] - x[1]) / (2 * kStep), (x[2] - x[3]) / (2 * kStep), (x[4] - x[5]) / (2 * kStep));
                 // Of a part, which has half the size; a mirror image has the same determinant.
                 EXPECT_NEAR(glm::determinant(found.at[corner]) * 8, glm::determinant(j), 5e-3);
+            }
+        }
+    }
+}
+
+// Where folds are looked for at the corners of all children, these are the corners that the children have themselves.
+TEST(DerivativeForm, CornersOfChildrenAreThoseOfEachChild) {
+    std::mt19937 dice(5);
+    std::normal_distribution<double> noise(0, 0.3);
+    for (const BoxType& type : bounded_types()) {
+        std::vector<Vec3> points;
+        for (std::size_t i = 0; i < type[0].points(); ++i) {
+            for (std::size_t j = 0; j < type[1].points(); ++j) {
+                for (std::size_t k = 0; k < type[2].points(); ++k) {
+                    points.push_back(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)) +
+                                     Vec3(noise(dice), noise(dice), noise(dice)));
+                }
+            }
+        }
+        const GridPart part(type, points, {});
+        const PartJacobians together = part.corners_of_children();
+        ASSERT_EQ(together.at.size(), 27u);
+        for (const GridPart& child : part.children()) {
+            const PartJacobians corners = child.corners();
+            for (std::size_t corner = 0; corner < 8; ++corner) {
+                const Vec3 place = child.frame().corner(corner);
+                std::size_t same = 0;
+                for (std::size_t k = 0; k < 27; ++k) {
+                    if (part.frame().corner_of_child(k) != place) continue;
+                    ++same;  // by the parameters of a child each derivative is half as large
+                    EXPECT_NEAR(glm::determinant(together.at[k]), 8 * glm::determinant(corners.at[corner]), 1e-9)
+                        << name_of(type);
+                }
+                EXPECT_EQ(same, 1u);
             }
         }
     }
