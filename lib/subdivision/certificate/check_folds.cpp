@@ -199,7 +199,8 @@ private:
     [[nodiscard]] Vec3 place(Index cell, Index point) const { return mesh_.points[point] - mesh_.points[mesh_.cells[cell][0]]; }
 
     [[nodiscard]] bool moves() const { return !mesh_.attributes.empty(); }
-    [[nodiscard]] Vec3 motion_of(std::size_t p) const {
+    [[nodiscard]] Vec3 motion_of(Index cell, Index point) const { return motion_at(point) - motion_at(mesh_.cells[cell][0]); }
+    [[nodiscard]] Vec3 motion_at(std::size_t p) const {
         const std::vector<double>& all = mesh_.attributes[0].values;
         return {all[3 * p], all[3 * p + 1], all[3 * p + 2]};
     }
@@ -209,45 +210,14 @@ private:
     [[nodiscard]] PartResult decide_parts(Index cell, const PartOf& part_of, const Limits& limits) const {
         auto middle = part_of([&](Index p) { return place(cell, p); });
         if (!moves()) return decide_part(std::move(middle), limits);
-        return decide_part(
-            MovingPart(std::move(middle), part_of([&](Index p) { return motion_of(p) - motion_of(mesh_.cells[cell][0]); })),
-            limits);
+        return decide_part(MovingPart(std::move(middle), part_of([&](Index p) { return motion_of(cell, p); })), limits);
     }
 
-    // The error that stands for the motion of points about one of them: what is proved for all errors of coordinates is proved
-    // for it. Points x + s m, with m near N x, are (x + s (m − N x) (1 + s N)⁻¹) (1 + s N) by rows: where |N| < 1 only the
-    // bracket counts, as the rest turns and stretches the whole window.
-    [[nodiscard]] double error_of_motion(Index about, std::span<const Index> points) const {
-        if (!moves()) return 0;
-        Eigen::MatrixXd x(points.size(), 3), m(points.size(), 3);
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const bool there = points[k] != kNone;
-            const Vec3 at = there ? mesh_.points[points[k]] - mesh_.points[about] : Vec3(0.0);
-            const Vec3 moved = there ? motion_of(points[k]) - motion_of(about) : Vec3(0.0);
-            for (int c = 0; c < 3; ++c) {
-                x(static_cast<Eigen::Index>(k), c) = at[c];
-                m(static_cast<Eigen::Index>(k), c) = moved[c];
-            }
-        }
-        const Eigen::Matrix3d n = (x.transpose() * x).ldlt().solve(x.transpose() * m);
-        constexpr double kRounding = 1e-14, kLargest = 0.9;
-        const double norm = n.norm();
-        if (!(norm < kLargest)) return std::numeric_limits<double>::infinity();
-        const double most =
-            (m - x * n).rowwise().norm().maxCoeff() + kRounding * (m.cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff());
-        return most / (1 - norm);
-    }
-
-    // proves(error): whether a window is proved with errors of coordinates; about: the point that it is taken about
+    // proves(time): whether a window is proved if it moves for that part of the time
     template <class Proves>
-    [[nodiscard]] std::uint8_t state_of(Index about, std::span<const Index> points, const Limits& limits,
-                                        const Proves& proves) const {
-        if (!moves()) return proves(limits.error) ? kProved : kOther;
-        constexpr double kMost = 10;  // 1 / (1 − |N|)
-        const double motion = error_of_motion(about, points);
-        if (std::isfinite(motion) && proves(motion + kMost * limits.error)) return kProved;
-        const double least = std::ldexp(motion, -limits.halvings);  // motion is proportional to time, or falls faster
-        return limits.halvings > 0 && std::isfinite(motion) && proves(least + kMost * limits.error) ? kMoves : kOther;
+    [[nodiscard]] std::uint8_t state_of(const Limits& limits, const Proves& proves) const {
+        if (proves(1.0)) return kProved;
+        return moves() && limits.halvings > 0 && proves(std::ldexp(1.0, -limits.halvings)) ? kMoves : kOther;
     }
 
     [[nodiscard]] std::optional<PartResult> decide_window(Index cell, const PartFrame& frame, const Limits& limits) const {
@@ -328,24 +298,28 @@ private:
     [[nodiscard]] std::uint8_t state_of_segment(Index cell, const Limits& limits) const {
         const std::optional<EdgeWindow> window = edge_window(topology_, cell);
         if (!window || !has_rules(*window)) return kOther;
-        Eigen::MatrixXd points(window->points.size(), 3);
-        for (std::size_t p = 0; p < window->points.size(); ++p) {
-            const Vec3 x = window->points[p] == kNone ? Vec3(0.0) : place(cell, window->points[p]);
-            points.row(static_cast<Eigen::Index>(p)) << x.x, x.y, x.z;
-        }
-        const Eigen::Index layer = points.rows() / static_cast<Eigen::Index>(EdgeWindow::kLayers);
-        for (const auto& [beyond, last, before] : {std::array{0, 1, 2}, std::array{3, 2, 1}}) {
-            if (!window->is_beyond(static_cast<std::size_t>(beyond))) continue;
-            points.middleRows(beyond * layer, layer) =
-                2 * points.middleRows(last * layer, layer) - points.middleRows(before * layer, layer);
-        }
-        constexpr int kHalvings = 6;
-        const auto proves = [&](double error) {
-            std::vector<DividedSegment> divided;
-            const DividedSegment whole{&segment_rules(scheme_, window->cells), points, 3 * error};
-            return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
+        const auto rows_of = [&](const auto& place_of) {
+            Eigen::MatrixXd rows(window->points.size(), 3);
+            for (std::size_t p = 0; p < window->points.size(); ++p) {
+                const Vec3 x = window->points[p] == kNone ? Vec3(0.0) : place_of(window->points[p]);
+                rows.row(static_cast<Eigen::Index>(p)) << x.x, x.y, x.z;
+            }
+            const Eigen::Index layer = rows.rows() / static_cast<Eigen::Index>(EdgeWindow::kLayers);
+            for (const auto& [beyond, last, before] : {std::array{0, 1, 2}, std::array{3, 2, 1}}) {
+                if (!window->is_beyond(static_cast<std::size_t>(beyond))) continue;
+                rows.middleRows(beyond * layer, layer) =
+                    2 * rows.middleRows(last * layer, layer) - rows.middleRows(before * layer, layer);
+            }
+            return rows;
         };
-        return state_of(mesh_.cells[cell][0], window->points, limits, proves);
+        const Eigen::MatrixXd points = rows_of([&](Index p) { return place(cell, p); });
+        const Eigen::MatrixXd motion = moves() ? rows_of([&](Index p) { return motion_of(cell, p); }) : Eigen::MatrixXd(0, 3);
+        constexpr int kHalvings = 6;
+        return state_of(limits, [&](double time) {
+            std::vector<DividedSegment> divided;
+            const DividedSegment whole{&segment_rules(scheme_, window->cells), points, time * motion, 3 * limits.error};
+            return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
+        });
     }
 
     // What was found for a point holds for all cells at it, so it is kept.
@@ -369,7 +343,11 @@ private:
         std::vector<Vec3> points;
         for (const Index p : window->points) points.push_back(mesh_.points[p] - mesh_.points[point]);
         const LinkKind& kind = link_kind(scheme_, window->link);
-        return state_of(point, window->points, limits, [&](double error) { return proves_point(kind, points, error); });
+        return state_of(limits, [&](double time) {
+            std::vector<Vec3> motion;
+            for (std::size_t k = 0; moves() && k < points.size(); ++k) motion.push_back(time * motion_at(window->points[k]));
+            return proves_point(kind, points, motion, limits.error);
+        });
     }
 
     [[nodiscard]] bool is_inside_straight_edge(Index point) const {

@@ -535,17 +535,38 @@ const EdgeKind& edge_kind(Scheme scheme, std::size_t cells) {
 }
 
 // Any A and ρ with P = 1 c + χ A + ρ would do but for the drift; those that are computed are near the true ones.
-bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, double error) {
-    if (!kind.is_bounded() || points.size() != kind.weights.size()) return false;
-    Vec3 center(0.0), size(0.0);
-    Mat3 a(0.0);  // row c of A is a[c]
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const Vec3 x = points[k] - points[0];
-        const auto& left = kind.left[k];
-        center += x * left[0];
-        for (int c = 0; c < 3; ++c) a[c] += x * left[static_cast<std::size_t>(c) + 1];
-        size = glm::max(size, glm::abs(x));
+namespace {
+
+/// The fit of χ to the values of a window: row c of A is a[c].
+struct Fit {
+    Vec3 center{0.0}, size{0.0};
+    Mat3 a{0.0};
+
+    Fit(const EdgeKind& kind, std::span<const Vec3> values) {
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const Vec3 x = values[k] - values[0];
+            const auto& left = kind.left[k];
+            center += x * left[0];
+            for (int c = 0; c < 3; ++c) a[c] += x * left[static_cast<std::size_t>(c) + 1];
+            size = glm::max(size, glm::abs(x));
+        }
     }
+    [[nodiscard]] Vec3 rest(const EdgeKind& kind, std::span<const Vec3> values, std::size_t k) const {
+        const auto& map = kind.characteristic[k];
+        return values[k] - values[0] - center - a[0] * map[0] - a[1] * map[1] - a[2] * map[2];
+    }
+};
+
+double frobenius(const Mat3& m) {
+    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+}  // namespace
+
+bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, std::span<const Vec3> motion, double error) {
+    if (!kind.is_bounded() || points.size() != kind.weights.size()) return false;
+    const Fit fit(kind, points), moved(kind, motion);
+    const Mat3& a = fit.a;
     const double det = glm::determinant(a);
     if (!(det > 1e-12 * glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]))) return false;
     const Mat3 inverse = glm::inverse(a);  // q = inverse · ρ, with A transposed
@@ -558,15 +579,20 @@ bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, double e
         }
     }
     constexpr double kOfRests = 1e-8;  // of L, χ and of sums of some hundred products
-    const double slack = kind.spread * (2 * error + kOfRests * std::max({size.x, size.y, size.z})) * height;
+    const Vec3 size = fit.size + moved.size;
+    const Mat3 turning = inverse * moved.a;  // N, transposed
+    const double turned = motion.empty() ? 0 : frobenius(turning) + kOfRests * height * (size.x + size.y + size.z);
+    if (!(turned < 0.9)) return false;
+    const double factor = turned / (1 - turned);  // of (1 + s N)⁻¹ − 1
+    const double slack = kind.spread * (2 * error + kOfRests * std::max({size.x, size.y, size.z})) * height * (1 + factor);
     if (!(residual < 1e-6) || !(slack < 1e-2)) return false;
     double across = 0, along = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const auto& map = kind.characteristic[k];
-        const Vec3 rest = points[k] - points[0] - center - a[0] * map[0] - a[1] * map[1] - a[2] * map[2];
-        const Vec3 q = inverse * rest;
-        across = std::max(across, std::hypot(q.x, q.y) / kind.weights[k]);
-        along = std::max(along, std::abs(q.z) / kind.weights[k]);
+        const Vec3 q = inverse * fit.rest(kind, points, k);
+        const Vec3 r = motion.empty() ? Vec3(0.0) : inverse * moved.rest(kind, motion, k) - turning * q;
+        const double more = factor * glm::length(r);
+        across = std::max(across, (std::hypot(q.x, q.y) + std::hypot(r.x, r.y) + more) / kind.weights[k]);
+        along = std::max(along, (std::abs(q.z) + std::abs(r.z) + more) / kind.weights[k]);
     }
     const auto with_error = [&](double q) { return (q + 2 * slack * (1 + across + along)) * (1 + 1e-5); };
     return kind.across * with_error(across) + kind.along * with_error(along) < 1;

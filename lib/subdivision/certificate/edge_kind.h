@@ -76,9 +76,11 @@ struct EdgeKind {
 /// The kind of the edges with so many cells under a spline scheme, made when it is first asked for. Thread-safe.
 [[nodiscard]] const EdgeKind& edge_kind(Scheme scheme, std::size_t cells);
 
-/// Proves (*) for a window, with all rounding. false: nothing is known
+/// Proves (*) for a window, with all rounding, at all times s from −1 to 1 if its points are at x + s m. With A and A_M of both
+/// and N = A_M A⁻¹, |N| < 1, q(s) = (q + s q_M) (1 + s N)⁻¹ = q + s (q_M − q N) (1 + s N)⁻¹. false: nothing is known
 ///
-/// points: those of the window; error: of a coordinate
-[[nodiscard]] bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, double error);
+/// points, motion: x and m of the points of the window, m of none if they do not move; error: of a coordinate
+[[nodiscard]] bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, std::span<const Vec3> motion,
+                                  double error);
 
 }  // namespace subvol::detail

@@ -342,55 +342,77 @@ const LinkKind& link_kind(Scheme scheme, const PointLink& link) {
 }
 
 // Any A and ρ with P = 1 c + χ A + ρ will do.
-bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double error) {
+bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<const Vec3> motion, double error) {
     if (!kind.is_bounded() || static_cast<Eigen::Index>(points.size()) != kind.weights.size()) return false;
-    MatrixXd window(kind.weights.size(), 3);
-    for (Eigen::Index k = 0; k < window.rows(); ++k) {
-        const Vec3 x = points[static_cast<std::size_t>(k)] - points[0];
-        window.row(k) << x.x, x.y, x.z;
-    }
-    const MatrixXd fit = kind.left.transpose() * window;
+    const auto rows_of = [](std::span<const Vec3> values) {
+        MatrixXd rows(static_cast<Eigen::Index>(values.size()), 3);
+        for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+            const Vec3 x = values[static_cast<std::size_t>(k)] - values[0];
+            rows.row(k) << x.x, x.y, x.z;
+        }
+        return rows;
+    };
+    const bool moves = !motion.empty();
+    const MatrixXd window = rows_of(points);
+    const MatrixXd moved = moves ? rows_of(motion) : MatrixXd::Zero(window.rows(), 3);
+    const MatrixXd fit = kind.left.transpose() * window, fit_of_motion = kind.left.transpose() * moved;
     const Matrix3d a = fit.bottomRows(3);
     if (!(a.determinant() > 1e-12 * a.row(0).norm() * a.row(1).norm() * a.row(2).norm())) return false;
     const Matrix3d inverse = a.inverse();
-    const double height = inverse.cwiseAbs().sum(), size = window.cwiseAbs().maxCoeff();
+    const double height = inverse.cwiseAbs().sum(), size = window.cwiseAbs().maxCoeff() + moved.cwiseAbs().maxCoeff();
     if (!((inverse * a - Matrix3d::Identity()).cwiseAbs().sum() < 1e-6)) return false;
-    // What coordinates and sums may be off, in the coordinates of χ.
     constexpr double kRounded = 1e-12;
-    const double slack = kind.spread * (2 * error + kRounded * size) * height;
+    const Matrix3d turning = fit_of_motion.bottomRows(3) * inverse;  // N
+    const double turned = moves ? turning.norm() + kind.spread * kRounded * size * height : 0;
+    if (!(turned < 0.9)) return false;
+    const double factor = turned / (1 - turned);  // of (1 + s N)⁻¹ − 1, as for segments
+    // What coordinates and sums may be off, in the coordinates of χ.
+    const double slack = kind.spread * (2 * error + kRounded * size) * height * (1 + factor);
     if (!(slack < 1e-3)) return false;
-    const MatrixXd q = ((window.rowwise() - fit.row(0)) - kind.characteristic * a) * inverse;
+    const auto rest_of = [&](const MatrixXd& values, const MatrixXd& of_values) {
+        return MatrixXd(((values.rowwise() - of_values.row(0)) - kind.characteristic * of_values.bottomRows(3)) * inverse);
+    };
     const Eigen::DiagonalMatrix<double, 3> faster(1 / kind.rates[0], 1 / kind.rates[1], 1 / kind.rates[2]);
+    // q and what it changes by.
+    std::vector<MatrixXd> rests{rest_of(window, fit)};
+    std::vector<MatrixXd> changes{rest_of(moved, fit_of_motion) - rests[0] * turning};
+    const auto size_at = [&](std::size_t level) {
+        return (rests[level].rowwise().norm() + changes[level].rowwise().norm()).cwiseQuotient(kind.weights).maxCoeff();
+    };
+    const double turned_change = factor * changes[0].rowwise().norm().cwiseQuotient(kind.weights).maxCoeff();
     // How many shells there are until q is small enough; with many, refinement of the mesh is quicker. Errors of q grow as q
     // does, and each level adds some roundings.
     constexpr std::size_t kMostShells = 8;
     const auto off_at = [&](std::size_t level) {
-        return 2 * slack * kind.growth + (1 + 4 * static_cast<double>(level) * kind.growth) * kOfSteps;
+        return (2 * slack + turned_change) * kind.growth + (1 + 4 * static_cast<double>(level) * kind.growth) * kOfSteps;
     };
-    std::vector<MatrixXd> rests{q};
     while (true) {
         const std::size_t level = rests.size() - 1;
-        const double most = rests.back().rowwise().norm().cwiseQuotient(kind.weights).maxCoeff();
-        if (kind.growth * (most + off_at(level)) < kind.reach) break;
+        if (kind.growth * (size_at(level) + off_at(level)) < kind.reach) break;
         if (level == kMostShells) return false;
         rests.emplace_back(kind.rest * rests.back() * faster);
+        changes.emplace_back(kind.rest * changes.back() * faster);
     }
     rests.pop_back();
     // Segments first: where their parts are not proved, no cell has to be tested.
     const auto near_at = [&](std::size_t level) { return MatrixXd(kind.characteristic + rests[level]); };
+    const auto change_at = [&](const SparseRowsXd& rows, std::size_t level) {
+        return moves ? MatrixXd(rows * changes[level]) : MatrixXd(0, 3);
+    };
     const auto error_at = [&](std::size_t level) {
         return 3 * off_at(level) * kind.weights.maxCoeff();  // beyond the boundary three times as much
     };
     std::vector<DividedSegment> divided;
     for (std::size_t level = 0; level < rests.size(); ++level) {
         for (const auto& segment : kind.segments) {
-            const DividedSegment whole{segment.rules, segment.rows * near_at(level), error_at(level)};
+            const DividedSegment whole{segment.rules, segment.rows * near_at(level), change_at(segment.rows, level),
+                                       error_at(level)};
             if (!divide_segment(whole, kDepthOfData, divided)) return false;
         }
     }
     for (std::size_t level = 0; level < rests.size(); ++level) {
         for (const SparseRowsXd& shell : kind.shell) {
-            if (!proves_spline_cell(shell * near_at(level), error_at(level))) return false;
+            if (!proves_spline_cell(shell * near_at(level), change_at(shell, level), error_at(level))) return false;
         }
     }
     return std::ranges::all_of(divided, proves_ring);

@@ -55,9 +55,10 @@ struct LinkKind {
 /// The kind of points with a link under a spline scheme, made when it is first asked for. Thread-safe.
 [[nodiscard]] const LinkKind& link_kind(Scheme scheme, const PointLink& link);
 
-/// Proves that no cell at a point folds, with all rounding. false: nothing is known
+/// Proves that no cell at a point folds, with all rounding, at all times s from −1 to 1 if its points are at x + s m. false:
+/// nothing is known
 ///
-/// points: those of the window; error: of a coordinate
-[[nodiscard]] bool proves_point(const LinkKind& kind, std::span<const Vec3> points, double error);
+/// points, motion: x and m of the points of the window, m of none if they do not move; error: of a coordinate
+[[nodiscard]] bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<const Vec3> motion, double error);
 
 }  // namespace subvol::detail

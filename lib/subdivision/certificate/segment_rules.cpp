@@ -11,17 +11,39 @@
 #include "edge_window.h"
 #include "fold_test.h"
 #include "kept.h"
+#include "moving_part.h"
 
 namespace subvol::detail {
 
 namespace {
 
-bool is_proved(PolynomialPart part, double error, int levels) {
+template <class Part>
+bool is_proved(const Part& part, double error, int levels) {
     const PartDecision decision = decide(part, error);
     if (decision.verdict != PartVerdict::Undecided) return decision.verdict == PartVerdict::Proved;
     if (levels == 0) return false;
-    return std::ranges::all_of(part.children(),
-                               [&](const PolynomialPart& child) { return is_proved(child, error, levels - 1); });
+    return std::ranges::all_of(part.children(), [&](const Part& child) { return is_proved(child, error, levels - 1); });
+}
+
+PolynomialPart spline_part(const Eigen::MatrixXd& points) {
+    std::array<Vec3, 64> spline{};
+    for (std::size_t p = 0; p < 64; ++p) {
+        const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
+        const auto row = points.row(static_cast<Eigen::Index>(p));
+        spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
+    }
+    return PolynomialPart::tricubic(spline, {});
+}
+
+std::vector<Vec3> points_of(const Eigen::MatrixXd& rows) {
+    std::vector<Vec3> points;
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
+    return points;
+}
+
+// No rows stay none.
+Eigen::MatrixXd product(const SparseRowsXd& rules, const Eigen::MatrixXd& motion) {
+    return motion.rows() == 0 ? motion : Eigen::MatrixXd(rules * motion);
 }
 
 }  // namespace
@@ -41,36 +63,30 @@ const SegmentRules& segment_rules(Scheme scheme, std::size_t cells) {
     });
 }
 
-bool proves_spline_cell(const Eigen::MatrixXd& points, double error) {
-    std::array<Vec3, 64> spline{};
-    for (std::size_t p = 0; p < 64; ++p) {
-        const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
-        const auto row = points.row(static_cast<Eigen::Index>(p));
-        spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
-    }
+bool proves_spline_cell(const Eigen::MatrixXd& points, const Eigen::MatrixXd& motion, double error) {
     constexpr int kLevels = 2;
-    return is_proved(PolynomialPart::tricubic(spline, {}), error, kLevels);
+    if (motion.rows() == 0) return is_proved(spline_part(points), error, kLevels);
+    return is_proved(MovingPart(spline_part(points), spline_part(motion)), error, kLevels);
 }
 
 bool divide_segment(const DividedSegment& segment, int depth, std::vector<DividedSegment>& divided) {
-    const auto& [rules, window, error] = segment;
-    std::vector<Vec3> points;
-    for (Eigen::Index k = 0; k < window.rows(); ++k) points.emplace_back(window(k, 0), window(k, 1), window(k, 2));
-    if (proves_segment(*rules->kind, points, error)) return true;
+    const auto& [rules, window, motion, error] = segment;
+    if (proves_segment(*rules->kind, points_of(window), points_of(motion), error)) return true;
     if (depth == 0 || !rules->kind->is_bounded()) return false;
     // Weights of rules are positive and sum up to 1: errors do not grow, and each sum adds its rounding.
     constexpr double kOfSums = 256 * std::numeric_limits<double>::epsilon();
-    const double below = error + kOfSums * window.cwiseAbs().maxCoeff();
-    divided.push_back({rules, window, below});
+    const double moved = motion.rows() == 0 ? 0 : motion.cwiseAbs().maxCoeff();
+    const double below = error + kOfSums * (window.cwiseAbs().maxCoeff() + moved);
+    divided.push_back({rules, window, motion, below});
     for (const SparseRowsXd& half : rules->halves) {
-        if (!divide_segment({rules, half * window, below}, depth - 1, divided)) return false;
+        if (!divide_segment({rules, half * window, product(half, motion), below}, depth - 1, divided)) return false;
     }
     return true;
 }
 
 bool proves_ring(const DividedSegment& segment) {
     return std::ranges::all_of(segment.rules->ring, [&](const SparseRowsXd& ring) {
-        return proves_spline_cell(ring * segment.window, segment.error);
+        return proves_spline_cell(ring * segment.window, product(ring, segment.motion), segment.error);
     });
 }
 

@@ -22,10 +22,11 @@ struct SegmentRules {
 /// Those of edges with so many cells under a spline scheme, made when first asked for. Thread-safe.
 [[nodiscard]] const SegmentRules& segment_rules(Scheme scheme, std::size_t cells);
 
-/// A segment whose ring has to be proved cell by cell. window: x, y, z of each point; error: of a coordinate
+/// A segment whose ring has to be proved cell by cell. window, motion: x, y, z of each point, and how far it moves on both
+/// sides of there (no rows: it does not); error: of a coordinate
 struct DividedSegment {
     const SegmentRules* rules;
-    Eigen::MatrixXd window;
+    Eigen::MatrixXd window, motion;
     double error;
 };
 
@@ -40,7 +41,7 @@ struct DividedSegment {
 
 /// Proves that a cell of a spline does not fold.
 ///
-/// points: x, y, z of its 4×4×4 points, in the order (4 i + j) 4 + k
-[[nodiscard]] bool proves_spline_cell(const Eigen::MatrixXd& points, double error);
+/// points, motion: x, y, z of its 4×4×4 points, in the order (4 i + j) 4 + k, and how far these move, as in DividedSegment
+[[nodiscard]] bool proves_spline_cell(const Eigen::MatrixXd& points, const Eigen::MatrixXd& motion, double error);
 
 }  // namespace subvol::detail
