@@ -153,6 +153,7 @@ def folds(files):
     files.command("model", "ball", "--resolution", 4, "-o", "ball.vtu")  # with a point pushed through its cell
     (files.folder / "fold.json").write_text('[{"select": {"ball": [0, 0, 0.5, 0.3]}}, {"move": [0, 0, -0.8]}, {"save_mesh": "part.vtu"}]')
     files.command("view", "ball.vtu", "--script", "fold.json")
+    files.pvd("run.pvd")
 
 
 def formats(files):
