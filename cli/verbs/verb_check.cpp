@@ -88,9 +88,12 @@ public:
 
 private:
     int check_series(const FoldOptions& folds, Report& report) {
-        const MeshSeries series = open_series(input_);
-        if (series.size() < 2)
+        const auto refuse_one = [&] {
             throw Error(ErrorCode::InvalidInput, "it has one step", input_, "a series of steps for --series");
+        };
+        if (is_model(input_)) refuse_one();
+        const MeshSeries series = open_series(input_);
+        if (series.size() < 2) refuse_one();
         CommonOptions options = common();
         if (options.read.time)
             throw Error(ErrorCode::InvalidInput, "nothing moves at one time", "--time", "--step 2-5, or all");
@@ -111,16 +114,17 @@ private:
             const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, folds); });
             steps.push_back({{"step", step}, {"time", time}});
             add(found, steps.back());
-            say(found, text("step ", step, ", time ", time), report);
+            say(found, text("step ", step, ", time ", time), false, report);
             if (before) {
                 const double from = series.times[static_cast<std::size_t>(step) - 1];
-                if (!moved_cells(*before, mesh)) {
+                HexMesh after = mesh;
+                turn_as(*before, after);
+                if (!moved_cells(*before, after)) {
                     report.warn(
                         text("the cells change between the steps ", step - 1, " and ", step, ": nothing is said between them"));
                     any_undecided_ = true;
                 } else {
-                    HexMesh after = mesh;
-                    if (!same_cells(*before, mesh)) {
+                    if (!same_cells(*before, after)) {
                         report.warn(text("the sharp edges change between the steps ", step - 1, " and ", step,
                                          ": between them those of the first are kept"));
                         after.creases = before->creases;
@@ -132,7 +136,7 @@ private:
                     add(moving, between.back());
                     for (std::size_t k = 0; k < moving.places.size(); ++k)
                         between.back()["places"][k]["time"] = moving.places[k].time;
-                    say(moving, text("between ", step - 1, " and ", step), report);
+                    say(moving, text("between ", step - 1, " and ", step), true, report);
                 }
             }
             before = std::move(mesh);
@@ -147,6 +151,17 @@ private:
         return any_folded_ ? 1 : 0;
     }
 
+    /// Cells that a reader has turned round in one step alone, where they are left-handed, have their corners in the order of
+    /// the step before.
+    static void turn_as(const HexMesh& before, HexMesh& mesh) {
+        if (before.points.size() != mesh.points.size() || before.cells.size() != mesh.cells.size()) return;
+        for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+            auto &cell = mesh.cells[c], as_before = before.cells[c];
+            if (cell == as_before || !std::ranges::is_permutation(cell, as_before)) continue;
+            cell = as_before;
+        }
+    }
+
     /// The figures of one step, or between two.
     void add(const FoldCheck& found, Json& entry) {
         entry.update(json_of(facts_of(found.report)));
@@ -155,14 +170,14 @@ private:
         any_undecided_ = any_undecided_ || found.report.open + found.report.irregular > 0;
     }
 
-    static void say(const FoldCheck& found, const std::string& where, Report& report) {
+    static void say(const FoldCheck& found, const std::string& where, bool between, Report& report) {
         const FoldReport& all = found.report;
         std::string line = where + ": ";
         if (all.folded > 0) {
             const FoldPlace& at = found.places.front();
             line += text(counted(all.folded, "cell"), " folded, one of them ", at.cell, " at ", at.position.x, ", ",
                          at.position.y, ", ", at.position.z);
-            if (at.time != 0) line += text(", time ", at.time);
+            if (between) line += text(", time ", at.time);
             line += "; ";
         }
         if (all.open + all.irregular > 0) line += text(counted(all.open + all.irregular, "cell"), " undecided; ");

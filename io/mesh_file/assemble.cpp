@@ -323,7 +323,7 @@ private:
                                 : ": asked for by its name, it is that of the " + std::to_string(cells) + " of " +
                                       counted(mesh.cells.size(), "cell", "cells") + " that have it; otherwise it is left out");
         }
-        incomplete_.push_back(in_quotes(array.name));
+        incomplete_.push_back(in_quotes(field.name));
         info.name = field.name;
         result_.fields.push_back(std::move(info));
         result_.incomplete.push_back(std::move(field));

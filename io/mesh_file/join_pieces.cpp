@@ -391,13 +391,13 @@ private:
             if (others > 0) all_.ignore(other_components(first->name, others, word_));
             std::vector<const FileArray*> parts(pieces_.size(), nullptr);
             for (const auto& [piece, array] : of_pieces) parts[piece] = array;
-            if (first->name == kGhostArray || of_pieces.size() == pieces_.size()) {  // where there are no ghosts, it may lack
+            if (first->name == kGhostArray) {  // where there are no ghosts, it may lack
                 all_.arrays.push_back(joined(*first, parts, 0));
                 continue;
             }
             const std::size_t with_gaps =
                 (first->at_cells ? cells_ : all_.points.size()) * static_cast<std::size_t>(first->components);
-            if (gaps.allows(first->name, with_gaps)) {
+            if (of_pieces.size() == pieces_.size() || gaps.allows(first->name, with_gaps)) {
                 add_with_gaps(*first, parts);
             } else {
                 all_.ignore(not_everywhere(first->name, word_));
@@ -405,37 +405,56 @@ private:
         }
     }
 
-    // An array that some pieces lack has no value there. At points where pieces touch it has that of the piece that has it, so
-    // a piece without it may not have cells all of whose corners are such points: they would seem to have it.
+    // An array that some pieces lack, or have in parts, has no value there. At points where pieces touch it has that of the
+    // piece that has one, so a cell without it may not have such points alone as its corners: it would seem to have it.
     void add_with_gaps(const FileArray& like, const std::vector<const FileArray*>& parts) {
         const auto components = static_cast<std::size_t>(like.components);
         FileArray array = joined(like, parts, std::numeric_limits<double>::quiet_NaN());
+        const auto has_gaps = [&] { return std::ranges::any_of(array.values, [](double v) { return !std::isfinite(v); }); };
         bool between = false;
-        if (!like.at_cells) {
+        if (!like.at_cells && has_gaps()) {
+            const auto is_there = [&](const std::vector<double>& values, std::size_t p) {
+                return std::ranges::all_of(std::span(values).subspan(p * components, components),
+                                           [](double value) { return std::isfinite(value); });
+            };
             std::vector<std::uint8_t> has_value(all_.points.size(), 0);
             for (std::size_t k = 0; k < parts.size(); ++k) {
                 if (parts[k] == nullptr) continue;
                 for (std::size_t p = 0; p < places_[k].size(); ++p) {
+                    if (!is_there(parts[k]->values, p)) continue;
                     if (std::exchange(has_value[places_[k][p]], std::uint8_t{1}) != 0) continue;
                     std::copy_n(&parts[k]->values[p * components], components, &array.values[places_[k][p] * components]);
                 }
             }
-            for (std::size_t k = 0; k < parts.size(); ++k) {
-                if (parts[k] != nullptr) continue;
-                const FileArray* const ghosts = find_array(pieces_[k], kGhostArray, true, 1);
-                each_kind(pieces_[k], [&](const auto& cells) {
-                    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
-                        if (ghosts != nullptr && !cells.numbers.empty() && leaves_out_cell(ghosts->values[cells.numbers[c]]))
-                            continue;
-                        between = between || std::ranges::all_of(cells.corners[c], [&](Index p) { return has_value[p] != 0; });
-                    }
-                });
-            }
+            for (std::size_t k = 0; k < parts.size(); ++k)
+                between = between || has_cell_between(k, parts[k], has_value, is_there);
         }
         if (!between) return all_.arrays.push_back(std::move(array));
         IgnoredPart part = not_everywhere(like.name, word_);
         part.reason += ", and cells without it lie between those that have it";
         all_.ignore(std::move(part));
+    }
+
+    // Whether a cell of a piece lacks the array, and all its corners have got it of other pieces.
+    template <class IsThere>
+    [[nodiscard]] bool has_cell_between(std::size_t piece, const FileArray* array, const std::vector<std::uint8_t>& has_value,
+                                        const IsThere& is_there) const {
+        std::vector<std::uint8_t> own(all_.points.size(), 0);  // of the piece itself
+        for (std::size_t p = 0; array != nullptr && p < places_[piece].size(); ++p) {
+            if (is_there(array->values, p)) own[places_[piece][p]] = 1;
+        }
+        const FileArray* const ghosts = find_array(pieces_[piece], kGhostArray, true, 1);
+        bool between = false;
+        each_kind(pieces_[piece], [&](const auto& cells) {
+            for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+                if (ghosts != nullptr && !cells.numbers.empty() && leaves_out_cell(ghosts->values[cells.numbers[c]])) continue;
+                const auto all_have = [&](const std::vector<std::uint8_t>& flags) {
+                    return std::ranges::all_of(cells.corners[c], [&](Index p) { return flags[p] != 0; });
+                };
+                between = between || (all_have(has_value) && !all_have(own));
+            }
+        });
+        return between;
     }
 
     // missing: the values of pieces that do not have the array

@@ -179,6 +179,10 @@ bool is_time_array(std::string_view name) {
     return name == "TimeValue" || name == "TIME";
 }
 
+IgnoredPart ignored_field_data(const std::string& name) {
+    return {"array", name, 1, is_time_array(name) ? "it is not one finite time" : "it is at no points or cells"};
+}
+
 void take_time(std::string_view name, std::span<const double> values, MeshFile& found) {
     if (values.size() == 1 && std::isfinite(values[0])) {
         found.time = values[0];

@@ -39,6 +39,9 @@ struct NamedNumbers {
 /// Whether an array at no points or cells has the time of the mesh: ParaView and VisIt call it so.
 [[nodiscard]] bool is_time_array(std::string_view name);
 
+/// What is said of an array at no points or cells of which nothing is taken.
+[[nodiscard]] IgnoredPart ignored_field_data(const std::string& name);
+
 /// Takes the time of the mesh from what such an array has, unless it is not one finite number.
 void take_time(std::string_view name, std::span<const double> values, MeshFile& found);
 

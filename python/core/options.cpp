@@ -3,6 +3,7 @@
 #include <functional>
 #include <iterator>
 #include <set>
+#include <type_traits>
 
 #include "bind.h"
 #include "subvol/detail/number_text.h"
@@ -15,6 +16,8 @@ namespace {
 template <class T>
 T value_as(const py::handle& given, const std::string& key, const char* needed) {
     try {
+        // Python takes True for 1, which a distance or a count was not meant to be.
+        if (!std::is_same_v<T, bool> && py::isinstance<py::bool_>(given)) throw py::cast_error();
         return given.cast<T>();
     } catch (const py::cast_error&) {
         throw py::type_error(key + ": " + needed + " is needed, not " +

@@ -74,6 +74,15 @@ class Check(InFolder):
         self.assertIn("between 0 and 1: 27 proved", lines)
         self.assertEqual(lines[-1].split(), ["verdict", "folded"])
 
+    def test_a_body_pulled_through_itself_folds_although_readers_turn_its_cells(self):
+        # At z → −z all cells are left-handed, which the reader mends: det = 1 − 2t between.
+        self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (x, y, -z))
+        for scheme in "linear", "mcq":
+            code, found = self.check("a.pvd", "--series", "--scheme", scheme)
+            self.assertEqual((code, [s["verdict"] for s in found["steps"]], found["between"][0]["verdict"]), (1, ["sound", "sound"], "folded"))
+            self.assertTrue(all(place["time"] > 1 for place in found["between"][0]["places"]))
+        self.assertRegex(subvol("check", "a.pvd", "--series", folder=self.folder).out, "between 0 and 1: 27 cells folded, .*, time 1.5; 0 proved")
+
     def test_kinds_of_undecided_cells(self):
         _, found = self.check("model:ball:3")
         self.assertEqual(sum(found["undecided_kinds"].values()), found["cells"]["undecided"])
@@ -85,7 +94,7 @@ class Check(InFolder):
 
     def test_what_is_no_series(self):
         self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (x, y, z))
-        for words, said in ((["0.mesh", "--series"], "it has one step"), (["a.pvd", "--series", "--step", "1"], "nothing moves in one step"),
+        for words, said in ((["0.mesh", "--series"], "it has one step"), (["model:ball:3", "--series"], "it has one step"), (["a.pvd", "--series", "--step", "1"], "nothing moves in one step"),
                             (["a.pvd", "--series", "--time", "1"], "nothing moves at one time"), (["a.pvd", "--time-levels", "2"], "--series"),
                             (["a.pvd", "--series", "--mend", "-o", "b.vtu"], "cannot be given together")):
             with self.subTest(words):

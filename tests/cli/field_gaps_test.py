@@ -328,6 +328,33 @@ class PiecesOfOneFileTest(InFolder):
         self.assertEqual(done.code, 2)
         self.assertIn('array "T" ignored: cells without it lie between those that have it', self.run_ok("info", "a.vtu", "--weld").err)
 
+    def test_files_with_gaps_beside_others(self):
+        T = {"T": lambda x, y, z: x}
+        for order in "01", "10":
+            self.write((T, ""), ({}, ""))
+            (self.folder / "a.vtu").rename(self.folder / "0.vtu")
+            (self.folder / "1.vtu").write_text(cube_file(2, {"h": lambda x, y, z: z, **T}))
+            pieces = "".join(f'<Piece Source="{k}.vtu"/>' for k in order)
+            (self.folder / "a.vtu").unlink(missing_ok=True)
+            (self.folder / "a.pvtu").write_text(f'<VTKFile type="PUnstructuredGrid" version="1.0"><PUnstructuredGrid>{pieces}</PUnstructuredGrid></VTKFile>')
+            done = self.run_ok("probe", "a.pvtu", "--stats", "--field", "T", "--scheme", "linear", "--json").json()
+            whole = done["stats"]["whole"]
+            self.assertEqual((done["cells_with_field"], round(whole["volume"], 9), round(whole["fields"][0]["mean"], 9)), (2, 2, 1.5))
+        # Between two others the cell without it would have all its corners' values: nobody may invent it.
+        (self.folder / "2.vtu").write_text(cube_file(-1, {"h": lambda x, y, z: z}))
+        self.write(({}, ""), (T, ""))
+        (self.folder / "a.vtu").rename(self.folder / "0.vtu")
+        (self.folder / "1.vtu").write_text(cube_file(-1, {"h": lambda x, y, z: z, **T}))
+        (self.folder / "a.pvtu").write_text('<VTKFile type="PUnstructuredGrid" version="1.0"><PUnstructuredGrid><Piece Source="0.vtu"/><Piece Source="1.vtu"/>'
+                                            "</PUnstructuredGrid></VTKFile>")
+        found = self.run_ok("info", "a.pvtu", "--weld", "--json").json()
+        self.assertEqual([f["name"] for f in found["fields"]], ["h"])
+        self.assertTrue(any("cells without it lie between" in warning for warning in found["warnings"]))
+
+    def test_names_in_the_warning_are_those_of_the_mesh(self):
+        self.write(({"T": lambda x, y, z: x}, "T"), ({"T": lambda x, y, z: x}, ""))
+        self.assertIn('field "T_2" has no value at 1 of 2 cells', self.run_ok("info", "a.vtu").err)
+
     def test_other_components_and_numbers_of_things_are_left_out(self):
         self.write(({"T": lambda x, y, z: x, "GlobalNodeId": lambda x, y, z: x}, ""), ({"T": lambda x, y, z: (x, y, z)}, ""))
         done = self.run_ok("info", "a.vtu")

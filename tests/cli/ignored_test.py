@@ -132,7 +132,10 @@ class Ignored(InFolder):
         self.assertEqual(self.run_ok("info", "a.xmf", "--json").json()["times"], [2.5])
         self.write("b.xmf", f'<Xdmf><Domain>{grid("mesh", None, "kept_out")}<Grid GridType="Collection" CollectionType="Temporal">{note("steps")}'
                    f'{grid("a", "1", "T")}{grid("b", "3", "T")}</Grid></Domain></Xdmf>')
-        self.assertEqual(self.listed("b.xmf"), {("Information", "steps", 1), ("array", "kept_out", 1)})
+        self.assertEqual(self.listed("b.xmf"), {("Information", "steps", 1), ("grid", "mesh", 1), ("array", "kept_out", 1)})
+        alone = grid("other", "1", "T").replace('<Attribute Name="T"', '<Information Name="T"').replace("</Attribute>", "</Information>")
+        self.write("c.xmf", f'<Xdmf><Domain>{alone}<Grid GridType="Collection" CollectionType="Temporal">{grid("a", "1", "T")}</Grid></Domain></Xdmf>')
+        self.assertEqual(self.listed("c.xmf"), {("grid", "other", 1)})
         done = self.run_ok("info", "b.xmf")
         self.assertIn('array "kept_out" ignored: its grid is beside the steps', done.err)
         self.assertEqual(self.run_ok("info", "b.xmf", "--json").json()["times"], [1, 3])
@@ -167,7 +170,16 @@ class Ignored(InFolder):
                     self.write(f"a.{ending}", f'<VTKFile type="{root}" version="1.0"><{root}>{FIELD_DATA if inside else ""}{files}</{root}>'
                                f'{"" if inside else FIELD_DATA}</VTKFile>')
                     self.assertEqual(self.listed(f"a.{ending}"), {("array", "names", 1), ("array", "energy", 1), ("array", "runs", 1)})
-                    self.assertEqual(self.run_ok("info", f"a.{ending}", "--json").json()["times"], [2.5])
+                    about = self.run_ok("info", f"a.{ending}", "--json").json()
+                    self.assertEqual((about["times"], [w for w in about["warnings"] if "time" in w]), ([2.5], []))
+        # Files of other times, of which the list's counts.
+        for k, time in enumerate((1, 3)):
+            self.write(f"{k}.vtu", VTU.format(x=k, y=k + 1).replace('"energy"', '"TimeValue"').replace(">7<", f">{time}<"))
+        for data, times, said in ((FIELD_DATA, [2.5], []), ("", [1], ["not every block is of the same time: that of the first is taken"])):
+            self.write("a.vtm", '<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet><DataSet index="0" file="0.vtu"/>'
+                       f'<DataSet index="1" file="1.vtu"/></vtkMultiBlockDataSet>{data}</VTKFile>')
+            about = self.run_ok("info", "a.vtm", "--json").json()
+            self.assertEqual((about["times"], [w for w in about["warnings"] if "time" in w]), (times, said))
 
     def test_frd(self):
         from field_gaps_test import frd

@@ -318,6 +318,7 @@ ReadResult read_step(const std::filesystem::path& path, const ReadOptions& optio
         MeshFile part = read_part(file, options);
         const std::size_t bytes = bytes_of(part);
         named.take("cells of " + NamedFiles::identity(file.path), bytes, bytes, [&] { return file.place; });
+        if (step.remarks.time) part.time.reset();  // whatever its files say
         if (!part.points.empty()) parts.push_back(std::move(part));
     }
     if (parts.empty()) parts.emplace_back();

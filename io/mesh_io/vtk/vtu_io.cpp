@@ -205,7 +205,7 @@ private:
                 continue;
             }
             if (!is_field_array(name)) {
-                found_.ignored.push_back({"array", name, 1, "it is at no points or cells"});
+                found_.ignored.push_back(ignored_field_data(name));
                 continue;
             }
             if (arrays_.has_integers(array)) {

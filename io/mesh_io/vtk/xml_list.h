@@ -47,7 +47,7 @@ public:
                     if (of_array.time) {
                         remarks.time = of_array.time;
                     } else {
-                        remarks.ignored.push_back({"array", name, 1, "it is at no points or cells"});
+                        remarks.ignored.push_back(ignored_field_data(name));
                     }
                 }
             }

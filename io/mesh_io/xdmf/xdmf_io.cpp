@@ -217,6 +217,8 @@ private:
             if (grid == steps) continue;
             if (is_collection(grid))
                 found.ignore({"grid", as_utf8(grid.attribute("Name").as_string()), 1, "it is beside the steps"});
+            if (!is_collection(grid) && std::ranges::find(used_, grid) == used_.end())
+                found.ignored.push_back({"grid", as_utf8(grid.attribute("Name").as_string()), 1, "it is beside the steps"});
             for (const auto& attribute : file_.children(grid, "Attribute"))
                 found.ignore({"array", as_utf8(attribute.attribute("Name").as_string()), 1, "its grid is beside the steps"});
         }
@@ -232,6 +234,9 @@ private:
     MeshFile read_grid(const pugi::xml_node& grid) {
         MeshFile found;
         const pugi::xml_node topology = part_of(grid, "Topology"), geometry = part_of(grid, "Geometry");
+        for (const pugi::xml_node& owner : {topology.parent(), geometry.parent()}) {
+            if (owner != grid && std::ranges::find(used_, owner) == used_.end()) used_.push_back(owner);
+        }
         const std::string kind = kind_of(topology, {"TopologyType", "Type"});
         if (kind == "3DSMESH" || kind == "3DRECTMESH" || kind == "3DCORECTMESH") {
             read_block(topology, geometry, kind, found);
@@ -461,6 +466,7 @@ private:
     TextScanner in_;
     pugi::xml_node first_;
     std::vector<IgnoredPart> ignored_;  // notes of all elements
+    std::vector<pugi::xml_node> used_;  // other grids whose cells or points were taken
     std::size_t cells_ = 0;             // of the grid
 };
 
