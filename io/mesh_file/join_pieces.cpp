@@ -410,9 +410,10 @@ private:
     void add_with_gaps(const FileArray& like, const std::vector<const FileArray*>& parts) {
         const auto components = static_cast<std::size_t>(like.components);
         FileArray array = joined(like, parts, std::numeric_limits<double>::quiet_NaN());
-        const auto has_gaps = [&] { return std::ranges::any_of(array.values, [](double v) { return !std::isfinite(v); }); };
+        const bool may_lack = std::ranges::find(parts, nullptr) != parts.end() ||
+                              std::ranges::any_of(array.values, [](double v) { return !std::isfinite(v); });
         bool between = false;
-        if (!like.at_cells && has_gaps()) {
+        if (!like.at_cells && may_lack) {
             const auto is_there = [&](const std::vector<double>& values, std::size_t p) {
                 return std::ranges::all_of(std::span(values).subspan(p * components, components),
                                            [](double value) { return std::isfinite(value); });

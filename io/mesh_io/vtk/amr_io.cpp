@@ -233,7 +233,8 @@ private:
                 points += block.box.grid().point_count();
                 cells += block.box.grid().cell_count();
             }
-            for (const auto& [name, like] : sets) {
+            for (const auto& entry : sets) {
+                const FileArray& like = entry.second;
                 const bool there = std::ranges::any_of(level.arrays, [&](const FileArray& array) {
                     return array.name == like.name && array.at_cells == like.at_cells && array.components == 1;
                 });
