@@ -224,11 +224,6 @@ TransferFunction categories(KnotRange range) {
         throw Error(ErrorCode::InvalidInput, "categories: the range has too many integers", "transfer function",
                     "at most 1000");
     }
-    constexpr double kMostExact = 0x1p52;  // beyond it numbers half way between integers are none
-    if (!(std::max(std::abs(first), std::abs(last)) <= kMostExact)) {
-        throw Error(ErrorCode::InvalidInput, "categories: the integers of the range are too large", "transfer function",
-                    "at most 2^52");
-    }
     TransferFunction function = constant(range);
     function.color.clear();
     for (double number = first; number <= last; ++number) {
