@@ -92,6 +92,25 @@ def check_folds(
     tests:       the most tests of a cell [1 to 1000000]
     """
 
+def check_folds_between(
+    before: HexMesh, after: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, levels: int = 5, irregular_levels: int = 2, tests: int = 1000,
+    time_levels: int = 5, progress: Progress = None
+) -> FoldCheck:
+    """Decides for each cell whether its limit folds at any time while all points move straight from one mesh to another of the same
+    cells. `open` is the part of the cell and of the time that is not decided; nothing is sampled.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
+    levels:      cut a cell into eight parts up to L times where a test does not decide [0 to 8]
+    irregular_levels: refine cells near irregular edges up to L times [0 to 6]
+    tests:       the most tests of a cell [1 to 1000000]
+    time_levels: halve the time between two steps up to L times where that does not decide [0 to 10]
+    """
+
 def control_mesh(
     points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
@@ -757,7 +776,7 @@ def write_wavelets(
 __all__ = [
     "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "FoldCheck", "Grid", "HexMesh", "Image", "ImageComparison",
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
-    "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "compare",
+    "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "check_folds_between", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
     "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
