@@ -6,6 +6,7 @@
 //     steps ─► verdicts of each step ─► and of the time from the step before, where the cells are the same
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 
 #include "input.h"
 #include "mesh_figures.h"
@@ -15,6 +16,7 @@
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "steps.h"
+#include "subvol/cell.h"
 #include "subvol/mend_folds.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_series.h"
@@ -151,15 +153,23 @@ private:
         return any_folded_ ? 1 : 0;
     }
 
-    /// Cells that a reader has turned round in one step alone, where they are left-handed, have their corners in the order of
-    /// the step before.
+    /// Cells that a reader has turned round in one step alone, where they are left-handed, get their corners in the order of
+    /// the step before: they have the same edges.
     static void turn_as(const HexMesh& before, HexMesh& mesh) {
         if (before.points.size() != mesh.points.size() || before.cells.size() != mesh.cells.size()) return;
         for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-            auto &cell = mesh.cells[c], as_before = before.cells[c];
-            if (cell == as_before || !std::ranges::is_permutation(cell, as_before)) continue;
-            cell = as_before;
+            if (edges_of(mesh.cells[c]) == edges_of(before.cells[c])) mesh.cells[c] = before.cells[c];
         }
+    }
+
+    static std::array<std::array<Index, 2>, 12> edges_of(const std::array<Index, 8>& cell) {
+        std::array<std::array<Index, 2>, 12> edges{};
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            const Index a = cell[kCellEdges[e][0]], b = cell[kCellEdges[e][1]];
+            edges[e] = {std::min(a, b), std::max(a, b)};
+        }
+        std::ranges::sort(edges);
+        return edges;
     }
 
     /// The figures of one step, or between two.

@@ -5,8 +5,8 @@
 //              exact places. The first of those that are joined is kept, with its values. Numbers also give the order
 //     cells    one piece after the other, with the new numbers of points; then in the order of their global numbers, if these
 //              are whole and different for all cells but ghosts
-//     rest     patches and sets of the same name become one; arrays that a piece lacks are left out, but for ghost flags, which
-//              are 0 there; values on patches go to their faces in the whole
+//     rest     patches and sets of the same name become one; arrays that a piece lacks have gaps there, but for ghost flags,
+//              which are 0; values on patches go to their faces in the whole
 //
 // The order by numbers does not depend on how the mesh was cut, so that what follows is as it would be for the whole mesh.
 #include "join_pieces.h"

@@ -56,8 +56,9 @@ private:
 /// Puts the parts of a mesh together, one after the other, and joins their points: those with the same number in an array
 /// `GlobalNodeId`, where all parts have it and it numbers places; else those of different parts at exactly the same place.
 /// The first of them is kept, with its values. Cells are put in the order of an array `GlobalCellId` or `GlobalElementId` where
-/// all parts with cells have it and no two cells (but ghosts) have the same number; that array is then left out, as are arrays
-/// that a part lacks. Adds warnings with the counts.
+/// all parts with cells have it and no two cells (but ghosts) have the same number; that array is then left out. An array
+/// that a part lacks, or has with gaps, has gaps there; it is left out if cells without it lie between those that have it. Adds
+/// warnings with the counts.
 ///
 /// word: "piece" or "block"
 [[nodiscard]] MeshFile join_pieces(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file);

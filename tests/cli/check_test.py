@@ -83,10 +83,25 @@ class Check(InFolder):
             self.assertTrue(all(place["time"] > 1 for place in found["between"][0]["places"]))
         self.assertRegex(subvol("check", "a.pvd", "--series", folder=self.folder).out, "between 0 and 1: 27 cells folded, .*, time 1.5; 0 proved")
 
+    def test_other_cells_of_the_same_corners_are_other_cells(self):
+        self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (x + 1, y, z))
+        text = (self.folder / "1.mesh").read_text().splitlines()
+        row = text.index("Hexahedra") + 2
+        a, b, *rest = text[row].split()
+        text[row] = " ".join([b, a, *rest])  # two corners exchanged: other edges
+        (self.folder / "1.mesh").write_text("\n".join(text) + "\n")
+        done = subvol("check", "a.pvd", "--series", "--scheme", "linear", "--json", folder=self.folder).json()
+        self.assertIn("the cells change between the steps 0 and 1: nothing is said between them", done["warnings"])
+        self.assertEqual(done["between"], [])
+
     def test_kinds_of_undecided_cells(self):
         _, found = self.check("model:ball:3")
         self.assertEqual(sum(found["undecided_kinds"].values()), found["cells"]["undecided"])
         self.assertEqual(set(found["undecided_kinds"]), {"irregular_edge", "irregular_point"})
+        # A box of two layers has no window that is decided at once; nothing in it is irregular.
+        (self.folder / "b.mesh").write_text(box(2, lambda x, y, z: (x, y, z)))
+        _, found = self.check("b.mesh", "--irregular-levels", "0")
+        self.assertLessEqual(set(found.get("undecided_kinds", {})), {"regular"})
         # Half a turn passes a determinant of 0.
         self.series(lambda x, y, z: (x, y, z), lambda x, y, z: (-x, -y, z))
         code, found = self.check("a.pvd", "--series", "--time-levels", "2")

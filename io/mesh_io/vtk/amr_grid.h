@@ -55,7 +55,8 @@ void check_amr(const AmrGrid& grid, std::string_view file);
 
 /// Makes a mesh of the cells that no finer block covers, level by level in the order of the blocks. Cells that the array of
 /// ghosts leaves out are left out, too. Points are joined by their numbers on the finest lattice: at a joined point the values
-/// of the finest level stay, and there those of the first block. Arrays that a level with cells lacks are left out.
+/// of the finest level stay, and there those of the first block; it is in a set of nodes if any block says so. Arrays that a
+/// level with cells lacks are left out.
 ///
 /// grid:    checked
 /// throws:  Error(InvalidInput) if there are more points than values, or a block without values is not covered

@@ -53,7 +53,7 @@ double largest_coordinate(const HexMesh& mesh) {
 // What is irregular at the corners of a cell.
 UndecidedKind kind_of_cell(const Topology& topology, Index cell) {
     constexpr std::size_t kMostCells = 8;
-    bool sharp = false, boundary = false, crowded = false, point = false;
+    bool sharp = false, boundary = false, crowded = false, point = false, edge = false;
     for (const Index p : topology.cells[cell]) {
         std::size_t irregular = 0;
         for (const Index e : topology.point_edges[p]) {
@@ -61,18 +61,21 @@ UndecidedKind kind_of_cell(const Topology& topology, Index cell) {
             for (const Index f : topology.edge_faces[e]) {
                 sharp = sharp || (topology.face_on_boundary(f) && !topology.face_on_hull(f));
             }
-            boundary = boundary || (topology.edge_on_boundary[e] != 0 && cells > 2);
+            boundary = boundary ||
+                       (topology.edge_on_boundary[e] != 0 && (cells > 2 || (cells == 2 && topology.edge_is_crease[e] != 0)));
             if (topology.edge_on_boundary[e] != 0 || (topology.edge_has_ring[e] != 0 && cells == 4)) continue;
             crowded = crowded || topology.edge_has_ring[e] == 0 || cells > kMostCells;
             ++irregular;
         }
+        edge = edge || irregular > 0;
         point = point || (irregular > 0 && (irregular != 2 || topology.point_on_boundary[p] != 0));
     }
     return sharp      ? UndecidedKind::SharpFace
            : boundary ? UndecidedKind::BoundaryEdge
            : crowded  ? UndecidedKind::CrowdedEdge
            : point    ? UndecidedKind::IrregularPoint
-                      : UndecidedKind::IrregularEdge;
+           : edge     ? UndecidedKind::IrregularEdge
+                      : UndecidedKind::Regular;
 }
 
 FoldPlace fold_at(const Vec3& place, const PartDecision& decision, const PartFrame& frame) {

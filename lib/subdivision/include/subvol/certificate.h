@@ -38,9 +38,10 @@ enum class UndecidedKind : std::uint8_t { Regular, SharpFace, BoundaryEdge, Crow
 template <>
 struct NameTable<UndecidedKind> {
     static constexpr Name<UndecidedKind> rows[] = {
-        {UndecidedKind::Regular, "regular", "its surroundings are a grid"},
+        {UndecidedKind::Regular, "regular", "nothing is irregular at its corners"},
         {UndecidedKind::SharpFace, "sharp_face", "it touches a sharp face inside the mesh"},
-        {UndecidedKind::BoundaryEdge, "boundary_edge", "it touches an edge of the boundary with more than two cells"},
+        {UndecidedKind::BoundaryEdge, "boundary_edge",
+         "it touches an edge of the boundary with more than two cells, or a crease with two"},
         {UndecidedKind::CrowdedEdge, "crowded_edge", "it touches an edge inside with more than eight cells"},
         {UndecidedKind::IrregularPoint, "irregular_point", "it touches a point where irregular edges meet or end"},
         {UndecidedKind::IrregularEdge, "irregular_edge", "it touches an edge inside with other than four cells"}};
@@ -125,8 +126,8 @@ struct FoldCheck {
 /// sampled, so a fold may be missed where nothing is proved: such cells are open or irregular.
 ///
 /// throws: Error(InvalidInput) as `check_folds`, or if the cells, creases or sharp faces differ
-/// cost:   as `check_folds`, for each stretch of time into which the motion has to be divided; rotations of half a radian are
-///         few, but at irregular edges hundreds
+/// cost:   as `check_folds` for each stretch of time into which the motion is divided, at most 2^time_levels, of the cells that
+///         are open in it
 [[nodiscard]] FoldCheck check_folds_between(const HexMesh& before, const HexMesh& after, const FoldMotionOptions& options = {});
 
 }  // namespace subvol
