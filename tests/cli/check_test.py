@@ -155,6 +155,15 @@ class Check(InFolder):
             self.assertIn(naming, done.err)
             self.assertFalse((self.folder / "e.vtu").exists())
 
+    def test_meshes_of_surfaces_are_proved_for_splines(self):
+        # Cells of a grid under a layer: irregular points next to each other. Their volume is that of the ball inside the surface.
+        self.run_ok("surface", "model:ball:6", "--boundary", "-o", "ball.obj")
+        for scheme in "cc", "bsxw":
+            self.run_ok("mesh", "ball.obj", "--cells", "5", "--scheme", scheme, "-o", "k.vtu")
+            code, found = self.check("k.vtu", "--scheme", scheme)
+            self.assertEqual((code, found["verdict"], found["cells"]["undecided"]), (0, "sound", 0))
+            self.assertGreater(self.run_ok("info", "k.vtu", "--json").json()["interior_edge_valence"]["5"], 10)
+
     def test_irregular_edges_stay_open(self):
         code, found = self.check("model:ball:3")
         self.assertEqual((code, found["verdict"]), (0, "undecided"))

@@ -254,21 +254,19 @@ std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bo
     return to;
 }
 
-std::vector<SparseRowsXd> whole_ring(const EdgeRules& rules) {
-    std::vector<SparseRowsXd> cells;
+std::vector<RowsXd> whole_ring(const EdgeRules& rules) {
+    std::vector<RowsXd> cells;
     const auto add = [&](const Eigen::MatrixXd& ring, std::size_t turn, bool mirror, bool exchange) {
         const std::vector<std::size_t> to = window_symmetry(rules.cells, turn, mirror, exchange);
-        std::vector<Eigen::Triplet<double>> terms;
-        for (int p = 0; p < 64; ++p) {
-            const int a = p / 16, b = p / 4 % 4, c = exchange ? 3 - p % 4 : p % 4;
-            const int row = mirror ? (4 * b + a) * 4 + c : (4 * a + b) * 4 + c;
+        RowsXd rows = RowsXd::Zero(64, ring.cols());
+        for (Eigen::Index p = 0; p < 64; ++p) {
+            const Eigen::Index a = p / 16, b = p / 4 % 4, c = exchange ? 3 - p % 4 : p % 4;
+            const Eigen::Index row = mirror ? (4 * b + a) * 4 + c : (4 * a + b) * 4 + c;
             for (std::size_t k = 0; k < to.size(); ++k) {
-                const double weight = ring(p, static_cast<Eigen::Index>(k));
-                if (weight != 0) terms.emplace_back(row, static_cast<int>(to[k]), weight);
+                rows(row, static_cast<Eigen::Index>(to[k])) = ring(p, static_cast<Eigen::Index>(k));
             }
         }
-        cells.emplace_back(64, ring.cols());
-        cells.back().setFromTriplets(terms.begin(), terms.end());
+        cells.push_back(std::move(rows));
     };
     for (std::size_t s = 0; s < rules.cells; ++s) {
         for (const bool exchange : {false, true}) {

@@ -75,6 +75,6 @@ struct EdgeRules {
 [[nodiscard]] std::vector<std::size_t> window_symmetry(std::size_t cells, std::size_t turn, bool mirror, bool exchange);
 
 /// The rules of all 6 m small cells of the ring, by the symmetries of the edge; each is right-handed.
-[[nodiscard]] std::vector<SparseRowsXd> whole_ring(const EdgeRules& rules);
+[[nodiscard]] std::vector<RowsXd> whole_ring(const EdgeRules& rules);
 
 }  // namespace subvol::detail

@@ -184,8 +184,9 @@ public:
         if (whole >= wanted || depth == 0) return whole;
         double parts = wanted;
         const double row_norm = norm(rows);
-        for (const auto& ring : rules_.ring) {
-            parts = std::min(parts, cell_reach(ring * rows, map_, row_norm, parts));
+        const RowsXd ring = rules_.ring.rows * rows;
+        for (std::size_t piece = 0; piece < rules_.ring.points.size(); ++piece) {
+            parts = std::min(parts, cell_reach(rules_.ring.of(piece, ring), map_, row_norm, parts));
             if (parts <= whole) return whole;
         }
         for (const SparseRowsXd& half : rules_.halves) {
@@ -241,7 +242,7 @@ private:
     MatrixXd left_, characteristic_;
 };
 
-constexpr int kDepthOfKinds = 6, kDepthOfData = 2;  // how often segments are halved; data are refined in the mesh, too
+constexpr int kDepth = 6;  // how often segments are halved
 
 }  // namespace
 
@@ -254,7 +255,7 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
     kind.characteristic = subspace->map;
     kind.left = subspace->left;
     kind.rates.assign(subspace->rates.begin(), subspace->rates.end());
-    for (const MatrixXd& shell : rules.shell) kind.shell.emplace_back(shell.sparseView());
+    kind.shell = spline_pieces(rules.shell);
     kind.weights = VectorXd::Ones(n);
     const PointStar star(link, PointWindow::kReach);
     star.each([&](std::size_t t, const std::array<int, 3>& s) {
@@ -267,14 +268,11 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
         kind.segments.push_back({&of_segment, segment.rows.sparseView()});
     }
     // The same orientation as the cells.
-    const auto slope_of = [&](const SparseRowsXd& shell) {
-        const MatrixXd spline = shell * kind.characteristic;
-        Matrix3d slope;
-        slope << spline.row(37) - spline.row(21), spline.row(25) - spline.row(21), spline.row(22) - spline.row(21);
-        return slope.determinant();
-    };
-    if (kind.shell.empty()) return kind;
-    if (slope_of(kind.shell[0]) < 0) {
+    if (rules.shell.empty()) return kind;
+    const MatrixXd spline = rules.shell[0] * kind.characteristic;
+    Matrix3d slope;
+    slope << spline.row(37) - spline.row(21), spline.row(25) - spline.row(21), spline.row(22) - spline.row(21);
+    if (slope.determinant() < 0) {
         kind.characteristic.col(2) *= -1;
         kind.left.col(3) *= -1;
     }
@@ -318,15 +316,14 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
     // A larger r saves less than it costs to prove: one shell of data for each halving.
     constexpr double kWanted = 0.03;
     double reach = kWanted;
-    for (const SparseRowsXd& shell : kind.shell) {
-        const RowsXd rows = RowsXd(shell) * kind.weights.asDiagonal();
+    for (const RowsXd& shell : rules.shell) {
+        const RowsXd rows = shell * kind.weights.asDiagonal();
         reach = std::min(reach, cell_reach(rows, map, norm(rows), reach));
         if (!(reach > 0)) return kind;
     }
     for (const auto& segment : kind.segments) {
-        reach = std::min(
-            reach,
-            SegmentReach(*segment.rules, map).of(RowsXd(segment.rows) * kind.weights.asDiagonal(), reach, kDepthOfKinds));
+        reach = std::min(reach,
+                         SegmentReach(*segment.rules, map).of(RowsXd(segment.rows) * kind.weights.asDiagonal(), reach, kDepth));
     }
     constexpr double kLeast = 1e-4;
     kind.reach = reach > kLeast ? kDown * reach : 0;
@@ -382,9 +379,10 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<
     const double turned_change = factor * changes[0].rowwise().norm().cwiseQuotient(kind.weights).maxCoeff();
     // How many shells there are until q is small enough; with many, refinement of the mesh is quicker. Errors of q grow as q
     // does, and each level adds some roundings.
-    constexpr std::size_t kMostShells = 8;
+    constexpr std::size_t kMostShells = 24;
     const auto off_at = [&](std::size_t level) {
-        return (2 * slack + turned_change) * kind.growth + (1 + 4 * static_cast<double>(level) * kind.growth) * kOfSteps;
+        const double steps = 1 + 4 * static_cast<double>(level) * kind.growth * (1 + size_at(0));
+        return (2 * slack + turned_change) * kind.growth + steps * kOfSteps;
     };
     while (true) {
         const std::size_t level = rests.size() - 1;
@@ -407,13 +405,12 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<
         for (const auto& segment : kind.segments) {
             const DividedSegment whole{segment.rules, segment.rows * near_at(level), change_at(segment.rows, level),
                                        error_at(level)};
-            if (!divide_segment(whole, kDepthOfData, divided)) return false;
+            if (!divide_segment(whole, kDepth, divided)) return false;
         }
     }
     for (std::size_t level = 0; level < rests.size(); ++level) {
-        for (const SparseRowsXd& shell : kind.shell) {
-            if (!proves_spline_cell(shell * near_at(level), change_at(shell, level), error_at(level))) return false;
-        }
+        const MatrixXd change = moves ? changes[level] : MatrixXd(0, 3);
+        if (!proves_pieces(kind.shell, near_at(level), change, error_at(level))) return false;
     }
     return std::ranges::all_of(divided, proves_ring);
 }

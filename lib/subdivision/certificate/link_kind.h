@@ -43,7 +43,7 @@ struct LinkKind {
     Eigen::MatrixXd characteristic, left;  ///< χ, and L of (1, χ)
     Eigen::VectorXd weights;               ///< d
     Eigen::MatrixXd rest;                  ///< T̄
-    std::vector<SparseRowsXd> shell;
+    SplinePieces shell;                    ///< its regular small cells
     std::vector<Segment> segments;
 
     [[nodiscard]] bool is_bounded() const { return reach > 0; }

@@ -246,8 +246,7 @@ PointRules point_rules(Scheme scheme, const PointLink& link) {
     });
     const std::vector<double> weights = tables.apply(std::span<const double>(units), columns);
     // Adds a point's weights; a negative step leads to the cell beyond, or beyond the boundary, where splines go on straight.
-    const auto add = [&](auto& self, Eigen::MatrixXd& rows, Eigen::Index row, std::size_t t, std::array<int, 3> steps,
-                         double by) -> void {
+    const auto add = [&](auto& self, auto& rows, Eigen::Index row, std::size_t t, std::array<int, 3> steps, double by) -> void {
         for (std::size_t v = 0; v < 3; ++v) {
             if (steps[v] >= 0) continue;
             const auto other = fine.beyond(t, v);
@@ -282,7 +281,7 @@ PointRules point_rules(Scheme scheme, const PointLink& link) {
         for (int low = 1; low < 8; ++low) {
             const std::array<int, 3> at{low & 1, low >> 1 & 1, low >> 2};
             if (at[0] + at[1] + at[2] == 1 && is_irregular(link[t][at[1] == 1 ? 1 : at[2] == 1 ? 2 : 0])) continue;
-            Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(64, n);
+            RowsXd rows = RowsXd::Zero(64, n);
             for (int p = 0; p < 64; ++p) {
                 add(add, rows, p, t, {at[0] + p / 16 - 1, at[1] + p / 4 % 4 - 1, at[2] + p % 4 - 1}, 1);
             }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "spline_rows.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
 
@@ -74,9 +75,9 @@ struct PointRules {
         std::size_t cells = 0;
         Eigen::MatrixXd rows;  ///< to the window of the segment (edge_window.h)
     };
-    Eigen::MatrixXd step;                ///< from the points of the window to those of the next window about the point
-    std::vector<Eigen::MatrixXd> shell;  ///< to the 4×4×4 points of regular small cells that are not at the point any more
-    std::vector<Segment> segments;       ///< segments of irregular edges that are not at the point any more
+    Eigen::MatrixXd step;           ///< from the points of the window to those of the next window about the point
+    std::vector<RowsXd> shell;      ///< to the 4×4×4 points of regular small cells that are not at the point any more
+    std::vector<Segment> segments;  ///< segments of irregular edges that are not at the point any more
 };
 
 /// scheme: Bsxw or CatmullClark

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -25,11 +26,12 @@ bool is_proved(const Part& part, double error, int levels) {
     return std::ranges::all_of(part.children(), [&](const Part& child) { return is_proved(child, error, levels - 1); });
 }
 
-PolynomialPart spline_part(const Eigen::MatrixXd& points) {
+// points: of all pieces
+PolynomialPart spline_part(const Eigen::MatrixXd& points, const std::array<Eigen::Index, 64>& piece) {
     std::array<Vec3, 64> spline{};
     for (std::size_t p = 0; p < 64; ++p) {
         const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
-        const auto row = points.row(static_cast<Eigen::Index>(p));
+        const auto row = points.row(piece[p]);
         spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
     }
     return PolynomialPart::tricubic(spline, {});
@@ -39,6 +41,89 @@ std::vector<Vec3> points_of(const Eigen::MatrixXd& rows) {
     std::vector<Vec3> points;
     for (Eigen::Index k = 0; k < rows.rows(); ++k) points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
     return points;
+}
+
+/// Tricubic Bézier points, coordinate by coordinate, in the order (4 i + j) 4 + k.
+using BezierPoints = std::array<std::array<double, 64>, 3>;
+
+template <std::size_t kStride>
+void make_bezier_along_axis(std::array<double, 64>& values) {
+    for (std::size_t block = 0; block < 64; block += 4 * kStride) {
+        for (std::size_t n = block; n < block + kStride; ++n) {
+            const double a = values[n], b = values[n + kStride], c = values[n + 2 * kStride], d = values[n + 3 * kStride];
+            values[n] = (a + 4 * b + c) * (1.0 / 6);
+            values[n + kStride] = (2 * b + c) * (1.0 / 3);
+            values[n + 2 * kStride] = (b + 2 * c) * (1.0 / 3);
+            values[n + 3 * kStride] = (b + 4 * c + d) * (1.0 / 6);
+        }
+    }
+}
+
+BezierPoints bezier_points(const Eigen::MatrixXd& points, const std::array<Eigen::Index, 64>& piece) {
+    BezierPoints bezier;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double* const column = points.data() + static_cast<Eigen::Index>(c) * points.rows();
+        for (std::size_t p = 0; p < 64; ++p) bezier[c][p] = column[piece[p]];
+        make_bezier_along_axis<16>(bezier[c]);
+        make_bezier_along_axis<4>(bezier[c]);
+        make_bezier_along_axis<1>(bezier[c]);
+    }
+    return bezier;
+}
+
+// Coefficients of the derivative along an axis: places of one coordinate.
+template <std::size_t kStride>
+std::array<double, 48> slopes_along_axis(const std::array<double, 64>& values) {
+    std::array<double, 48> slopes;
+    for (std::size_t block = 0, to = 0; block < 64; block += 4 * kStride) {
+        for (std::size_t n = block; n < block + 3 * kStride; ++n, ++to) slopes[to] = 3 * (values[n + kStride] - values[n]);
+    }
+    return slopes;
+}
+
+// The first test of `decide` alone, for pieces that do not move, without a part being made.
+bool passes_norm(const BezierPoints& bezier, double error) {
+    using Slopes = std::array<std::array<double, 48>, 3>;  // of each coordinate
+    std::array<Slopes, 3> slopes;
+    for (std::size_t c = 0; c < 3; ++c) {
+        slopes[0][c] = slopes_along_axis<16>(bezier[c]);
+        slopes[1][c] = slopes_along_axis<4>(bezier[c]);
+        slopes[2][c] = slopes_along_axis<1>(bezier[c]);
+    }
+    // Any matrix will do as G; this one is near the derivatives in the middle.
+    Mat3 center;
+    Vec3 size(0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            double sum = 0, most = 0;
+            for (const double slope : slopes[axis][c]) {
+                sum += slope;
+                most = std::max(most, std::abs(slope));
+            }
+            center[static_cast<int>(axis)][static_cast<int>(c)] = sum / 48;
+            size[static_cast<int>(c)] = std::max(size[static_cast<int>(c)], most);
+        }
+    }
+    const auto scale = part_scale(center, size, error);
+    if (!scale) return false;
+    Vec3 sums = scale->slack * 3.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (int row = 0; row < 3; ++row) {
+            const double h0 = scale->inverse[0][row], h1 = scale->inverse[1][row], h2 = scale->inverse[2][row];
+            const double unit = static_cast<int>(axis) == row ? 1 : 0;
+            constexpr std::size_t kLanes = 8;
+            std::array<double, kLanes> most{};
+            for (std::size_t k = 0; k < 48; k += kLanes) {
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const double away = std::abs(h0 * slopes[axis][0][k + lane] + h1 * slopes[axis][1][k + lane] +
+                                                 h2 * slopes[axis][2][k + lane] - unit);
+                    most[lane] = away > most[lane] ? away : most[lane];
+                }
+            }
+            sums[row] += *std::ranges::max_element(most);
+        }
+    }
+    return sums.x < 1 && sums.y < 1 && sums.z < 1;
 }
 
 // No rows stay none.
@@ -57,16 +142,21 @@ const SegmentRules& segment_rules(Scheme scheme, std::size_t cells) {
             if (!rules.kind->is_bounded()) return rules;
             const EdgeRules dense = edge_rules(scheme, cells);
             rules.halves = {dense.halves[0].sparseView(), dense.halves[1].sparseView()};
-            rules.ring = whole_ring(dense);
+            rules.ring = spline_pieces(whole_ring(dense));
             return rules;
         });
     });
 }
 
-bool proves_spline_cell(const Eigen::MatrixXd& points, const Eigen::MatrixXd& motion, double error) {
+bool proves_pieces(const SplinePieces& pieces, const Eigen::MatrixXd& window, const Eigen::MatrixXd& motion, double error) {
     constexpr int kLevels = 2;
-    if (motion.rows() == 0) return is_proved(spline_part(points), error, kLevels);
-    return is_proved(MovingPart(spline_part(points), spline_part(motion)), error, kLevels);
+    const Eigen::MatrixXd points = pieces.rows * window, moved = product(pieces.rows, motion);
+    return std::ranges::all_of(pieces.points, [&](const std::array<Eigen::Index, 64>& piece) {
+        if (moved.rows() == 0) {
+            return passes_norm(bezier_points(points, piece), error) || is_proved(spline_part(points, piece), error, kLevels);
+        }
+        return is_proved(MovingPart(spline_part(points, piece), spline_part(moved, piece)), error, kLevels);
+    });
 }
 
 bool divide_segment(const DividedSegment& segment, int depth, std::vector<DividedSegment>& divided) {
@@ -85,9 +175,7 @@ bool divide_segment(const DividedSegment& segment, int depth, std::vector<Divide
 }
 
 bool proves_ring(const DividedSegment& segment) {
-    return std::ranges::all_of(segment.rules->ring, [&](const SparseRowsXd& ring) {
-        return proves_spline_cell(ring * segment.window, product(ring, segment.motion), segment.error);
-    });
+    return proves_pieces(segment.rules->ring, segment.window, segment.motion, segment.error);
 }
 
 }  // namespace subvol::detail

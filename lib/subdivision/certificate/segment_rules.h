@@ -16,7 +16,7 @@ namespace subvol::detail {
 struct SegmentRules {
     const EdgeKind* kind = nullptr;
     std::array<SparseRowsXd, 2> halves;  ///< from the window of the segment to those of its halves
-    std::vector<SparseRowsXd> ring;      ///< to the 4×4×4 points of each small cell between the segment and its halves
+    SplinePieces ring;                   ///< the small cells between the segment and its halves
 };
 
 /// Those of edges with so many cells under a spline scheme, made when first asked for. Thread-safe.
@@ -39,9 +39,8 @@ struct DividedSegment {
 /// Proves that no cell of the ring of a segment folds. false: nothing is known
 [[nodiscard]] bool proves_ring(const DividedSegment& segment);
 
-/// Proves that a cell of a spline does not fold.
-///
-/// points, motion: x, y, z of its 4×4×4 points, in the order (4 i + j) 4 + k, and how far these move, as in DividedSegment
-[[nodiscard]] bool proves_spline_cell(const Eigen::MatrixXd& points, const Eigen::MatrixXd& motion, double error);
+/// Proves that none of the pieces of a window folds. window, motion, error: as in DividedSegment
+[[nodiscard]] bool proves_pieces(const SplinePieces& pieces, const Eigen::MatrixXd& window, const Eigen::MatrixXd& motion,
+                                 double error);
 
 }  // namespace subvol::detail

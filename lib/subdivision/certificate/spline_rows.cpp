@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spline_rows.h"
 
+#include <map>
+
 namespace subvol::detail {
 
 RowsXd along_axis(const Eigen::Matrix4d& by, const RowsXd& rows, Eigen::Index axis) {
@@ -31,6 +33,25 @@ Eigen::Matrix4d half_of_bezier(bool upper) {
     Eigen::Matrix4d lower;
     lower << 8, 0, 0, 0, 4, 4, 0, 0, 2, 4, 2, 0, 1, 3, 3, 1;
     return (upper ? Eigen::Matrix4d(lower.reverse()) : lower) / 8;
+}
+
+SplinePieces spline_pieces(const std::vector<RowsXd>& rows) {
+    SplinePieces pieces;
+    std::map<std::vector<double>, Eigen::Index> numbers;  // of points by their weights
+    for (const RowsXd& piece : rows) {
+        auto& points = pieces.points.emplace_back();
+        for (Eigen::Index p = 0; p < 64; ++p) {
+            const auto row = piece.row(p);
+            points[static_cast<std::size_t>(p)] =
+                numbers.try_emplace({row.begin(), row.end()}, static_cast<Eigen::Index>(numbers.size())).first->second;
+        }
+    }
+    RowsXd all(static_cast<Eigen::Index>(numbers.size()), rows.empty() ? 0 : rows[0].cols());
+    for (const auto& [weights, number] : numbers) {
+        all.row(number) = Eigen::Map<const Eigen::RowVectorXd>(weights.data(), all.cols());
+    }
+    pieces.rows = all.sparseView();
+    return pieces;
 }
 
 }  // namespace subvol::detail

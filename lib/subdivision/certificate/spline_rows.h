@@ -3,6 +3,9 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <array>
+#include <cstddef>
+#include <vector>
 
 namespace subvol::detail {
 
@@ -23,5 +26,22 @@ using SparseRowsXd = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// From the coefficients on [0, 1] to those on a half.
 [[nodiscard]] Eigen::Matrix4d half_of_bezier(bool upper);
+
+/// Tricubic pieces whose points are weighted sums of those of a window. They have most of their points in common.
+struct SplinePieces {
+    SparseRowsXd rows;                                 ///< from the window to all points
+    std::vector<std::array<Eigen::Index, 64>> points;  ///< of each piece, as rows of these
+
+    /// The 64 rows of a piece. of_points: a row for each point
+    template <class Rows>
+    [[nodiscard]] Rows of(std::size_t piece, const Rows& of_points) const {
+        Rows result(64, of_points.cols());
+        for (Eigen::Index p = 0; p < 64; ++p) result.row(p) = of_points.row(points[piece][static_cast<std::size_t>(p)]);
+        return result;
+    }
+};
+
+/// rows: of each piece, from the window to its 64 points
+[[nodiscard]] SplinePieces spline_pieces(const std::vector<RowsXd>& rows);
 
 }  // namespace subvol::detail
