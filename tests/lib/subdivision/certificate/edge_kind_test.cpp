@@ -14,7 +14,7 @@ namespace edge_kind_test {
 
 TEST(EdgeKind, RulesAreThoseOfTheDefinition) {
     for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
-        for (const std::size_t m : {3, 5, 6, 8}) {
+        for (const std::size_t m : {3UL, 5UL, 6UL, 8UL}) {
             const EdgeRules rules = edge_rules(scheme, m), expected = defined_rules(scheme, m);
             for (std::size_t h = 0; h < 2; ++h) {
                 EXPECT_LT((rules.halves[h] - expected.halves[h]).cwiseAbs().maxCoeff(), 1e-14) << name_of(scheme, m);
@@ -65,7 +65,7 @@ TEST(EdgeKind, OtherRulesHaveNoConstants) {
     for (int k = 0; k < 200; ++k) {
         EdgeRules other = rules;
         MatrixXd& rows = k % 4 == 3 ? other.ring[dice() % 2] : other.halves[dice() % 2];
-        rows(dice() % rows.rows(), dice() % rows.cols()) += 1e-9;
+        rows(static_cast<Eigen::Index>(dice()) % rows.rows(), static_cast<Eigen::Index>(dice()) % rows.cols()) += 1e-9;
         EXPECT_FALSE(make_edge_kind(other, false).is_bounded());
     }
 }

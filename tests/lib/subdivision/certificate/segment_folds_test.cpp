@@ -129,7 +129,7 @@ std::size_t count_of(const char* variable, std::size_t usual) {
 TEST(EdgeKind, NothingIsProvedFalsely) {
     const std::size_t stars = count_of("SUBVOL_STARS", 5), places = count_of("SUBVOL_STAR_PLACES", 300);
     for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
-        for (const std::size_t m : {3, 5, 6, 7, 8}) {
+        for (const std::size_t m : {3UL, 5UL, 6UL, 7UL, 8UL}) {
             const EdgeRules rules = edge_rules(scheme, m);
             const Ring ring(rules);
             const FoldOptions options{.scheme = {.kind = scheme}};
@@ -165,7 +165,7 @@ TEST(EdgeKind, NothingIsProvedFalsely) {
 // or coarser lies.
 TEST(EdgeKind, FoldsOfFineLevelsAreNotProved) {
     for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
-        for (const std::size_t m : {3, 5, 6}) {
+        for (const std::size_t m : {3UL, 5UL, 6UL}) {
             for (const double least : {-5e-6, 0.2}) {
                 // f'(t) = a (1 − t)²/2 + b (1/2 + t − t²) + c t²/2 has its minimum at 0.3 if its derivative is 0 there.
                 constexpr double kAt = 0.3, kHigh = 1;
@@ -201,7 +201,7 @@ TEST(EdgeKind, FoldsOfFineLevelsAreNotProved) {
 
 // A straight edge from boundary to boundary.
 TEST(EdgeKind, StraightStarsAreProved) {
-    for (const std::size_t m : {3, 5, 6}) {
+    for (const std::size_t m : {3UL, 5UL, 6UL}) {
         const StarMesh star = make_star(m, 3, 5);
         for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
             EXPECT_EQ(check_folds(star.mesh, {.scheme = {.kind = scheme}}).report.proved, star.mesh.cells.size())
@@ -212,7 +212,7 @@ TEST(EdgeKind, StraightStarsAreProved) {
 
 // The limit of BSXW in the cells where an edge ends goes on straight beyond the boundary.
 TEST(EdgeKind, RulesGoOnStraightAtTheBoundary) {
-    for (const std::size_t m : {3, 5}) {
+    for (const std::size_t m : {3UL, 5UL}) {
         StarMesh star = make_star(m, 3, 3);
         move_at_random(star.mesh, 0.2, 7);
         const HexMesh fine = refine(star.mesh, {.scheme = {.kind = Scheme::Bsxw}, .levels = 1});
