@@ -156,7 +156,7 @@ class Check(InFolder):
             self.assertFalse((self.folder / "e.vtu").exists())
 
     def test_meshes_of_surfaces_are_proved_for_splines(self):
-        # Cells of a grid under a layer: irregular points next to each other. Their volume is that of the ball inside the surface.
+        # Cells of a grid under a layer: irregular points next to each other.
         self.run_ok("surface", "model:ball:6", "--boundary", "-o", "ball.obj")
         for scheme in "cc", "bsxw":
             self.run_ok("mesh", "ball.obj", "--cells", "5", "--scheme", scheme, "-o", "k.vtu")

@@ -260,6 +260,20 @@ std::vector<Mat3> jacobians(const PartForm& form, CsrMatrix AxisForm::*rows, con
     return at;
 }
 
+// The Bézier points of uniform cubic splines along an axis, in place of their points.
+template <std::size_t kStride>
+void make_bezier_along_axis(std::array<double, 64>& values) {
+    for (std::size_t block = 0; block < 64; block += 4 * kStride) {
+        for (std::size_t n = block; n < block + kStride; ++n) {
+            const double a = values[n], b = values[n + kStride], c = values[n + 2 * kStride], d = values[n + 3 * kStride];
+            values[n] = (a + 4 * b + c) * (1.0 / 6);
+            values[n + kStride] = (2 * b + c) * (1.0 / 3);
+            values[n + 2 * kStride] = (b + 2 * c) * (1.0 / 3);
+            values[n + 3 * kStride] = (b + 4 * c + d) * (1.0 / 6);
+        }
+    }
+}
+
 }  // namespace
 
 Vec3 GridPart::size() const {
@@ -341,33 +355,34 @@ PolynomialPart PolynomialPart::trilinear(std::span<const Vec3, 8> corners, const
     return {std::move(columns), frame};
 }
 
-PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const PartFrame& frame) {
-    // Bézier points of a uniform cubic spline along each axis.
-    constexpr std::array<std::array<double, 4>, 4> kBezier{
-        {{1.0 / 6, 4.0 / 6, 1.0 / 6, 0}, {0, 4.0 / 6, 2.0 / 6, 0}, {0, 2.0 / 6, 4.0 / 6, 0}, {0, 1.0 / 6, 4.0 / 6, 1.0 / 6}}};
-    constexpr std::array<std::array<std::size_t, 2>, 4> kUsed{{{0, 3}, {1, 3}, {1, 3}, {1, 4}}};  // the weights other than 0
-    std::array<Vec3, 64> bezier;
-    for (std::size_t p = 0; p < 64; ++p) bezier[p] = points[p / 16 + p / 4 % 4 * 4 + p % 4 * 16];
-    for (const std::size_t stride : {std::size_t{16}, std::size_t{4}, std::size_t{1}}) {
-        for (std::size_t first = 0; first < 64; ++first) {
-            if (first / stride % 4 != 0) continue;
-            std::array<Vec3, 4> line;
-            for (std::size_t at = 0; at < 4; ++at) {
-                Vec3 sum(0.0);
-                for (std::size_t k = kUsed[at][0]; k < kUsed[at][1]; ++k) sum += bezier[first + k * stride] * kBezier[at][k];
-                line[at] = sum;
-            }
-            for (std::size_t at = 0; at < 4; ++at) bezier[first + at * stride] = line[at];
-        }
+void make_bezier(BezierPoints& points) {
+    for (std::array<double, 64>& values : points) {
+        make_bezier_along_axis<16>(values);
+        make_bezier_along_axis<4>(values);
+        make_bezier_along_axis<1>(values);
     }
+}
+
+PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const PartFrame& frame) {
+    BezierPoints bezier;
+    for (std::size_t p = 0; p < 64; ++p) {
+        const Vec3& x = points[p / 16 + p / 4 % 4 * 4 + p % 4 * 16];
+        for (std::size_t c = 0; c < 3; ++c) bezier[c][p] = x[static_cast<int>(c)];
+    }
+    make_bezier(bezier);
+    return tricubic(bezier, frame);
+}
+
+PolynomialPart PolynomialPart::tricubic(const BezierPoints& points, const PartFrame& frame) {
     BernsteinColumns columns;
     const std::array<std::size_t, 3> strides{16, 4, 1};
     for (std::size_t c = 0; c < 3; ++c) {
         columns[c].degree = {3, 3, 3};
         columns[c].degree[c] = 2;
         columns[c].values.reserve(48);
+        const auto at = [&](std::size_t p) { return Vec3(points[0][p], points[1][p], points[2][p]); };
         for (std::size_t p = 0; p < 64; ++p) {
-            if (p / strides[c] % 4 != 3) columns[c].values.push_back((bezier[p + strides[c]] - bezier[p]) * 3.0);
+            if (p / strides[c] % 4 != 3) columns[c].values.push_back((at(p + strides[c]) - at(p)) * 3.0);
         }
     }
     return {std::move(columns), frame};

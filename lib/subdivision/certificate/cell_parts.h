@@ -58,6 +58,12 @@ private:
 /// Whether the derivatives of a type have bounds, in some order and direction of its axes.
 [[nodiscard]] bool has_bounds(BoxType type);
 
+/// Tricubic Bézier points, coordinate by coordinate, in the order (4 i + j) 4 + k.
+using BezierPoints = std::array<std::array<double, 64>, 3>;
+
+/// Makes them of the points of a uniform cubic spline in the same order.
+void make_bezier(BezierPoints& points);
+
 /// A cell whose derivatives are polynomials, or one of its descendants.
 class PolynomialPart {
 public:
@@ -65,6 +71,8 @@ public:
 
     /// The trilinear cell with these corners, in VTK's order.
     [[nodiscard]] static PolynomialPart trilinear(std::span<const Vec3, 8> corners, const PartFrame& frame);
+    /// A tricubic piece.
+    [[nodiscard]] static PolynomialPart tricubic(const BezierPoints& points, const PartFrame& frame);
     /// The tricubic B-spline of 4×4×4 points, point (i, j, k) at i + 4j + 16k.
     [[nodiscard]] static PolynomialPart tricubic(std::span<const Vec3, 64> points, const PartFrame& frame);
 

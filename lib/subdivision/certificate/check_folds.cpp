@@ -317,11 +317,10 @@ private:
         };
         const Eigen::MatrixXd points = rows_of([&](Index p) { return place(cell, p); });
         const Eigen::MatrixXd motion = moves() ? rows_of([&](Index p) { return motion_of(cell, p); }) : Eigen::MatrixXd(0, 3);
-        constexpr int kHalvings = 6;
         return state_of(limits, [&](double time) {
             std::vector<DividedSegment> divided;
             const DividedSegment whole{&segment_rules(scheme_, window->cells), points, time * motion, 3 * limits.error};
-            return divide_segment(whole, kHalvings, divided) && std::ranges::all_of(divided, proves_ring);
+            return divide_segment(whole, kMostHalvings, divided) && std::ranges::all_of(divided, proves_ring);
         });
     }
 

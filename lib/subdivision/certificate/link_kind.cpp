@@ -242,8 +242,6 @@ private:
     MatrixXd left_, characteristic_;
 };
 
-constexpr int kDepth = 6;  // how often segments are halved
-
 }  // namespace
 
 LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
@@ -322,8 +320,9 @@ LinkKind make_link_kind(Scheme scheme, const PointLink& link) {
         if (!(reach > 0)) return kind;
     }
     for (const auto& segment : kind.segments) {
-        reach = std::min(reach,
-                         SegmentReach(*segment.rules, map).of(RowsXd(segment.rows) * kind.weights.asDiagonal(), reach, kDepth));
+        reach = std::min(
+            reach,
+            SegmentReach(*segment.rules, map).of(RowsXd(segment.rows) * kind.weights.asDiagonal(), reach, kMostHalvings));
     }
     constexpr double kLeast = 1e-4;
     kind.reach = reach > kLeast ? kDown * reach : 0;
@@ -405,7 +404,7 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<
         for (const auto& segment : kind.segments) {
             const DividedSegment whole{segment.rules, segment.rows * near_at(level), change_at(segment.rows, level),
                                        error_at(level)};
-            if (!divide_segment(whole, kDepth, divided)) return false;
+            if (!divide_segment(whole, kMostHalvings, divided)) return false;
         }
     }
     for (std::size_t level = 0; level < rests.size(); ++level) {

@@ -26,48 +26,20 @@ bool is_proved(const Part& part, double error, int levels) {
     return std::ranges::all_of(part.children(), [&](const Part& child) { return is_proved(child, error, levels - 1); });
 }
 
-// points: of all pieces
-PolynomialPart spline_part(const Eigen::MatrixXd& points, const std::array<Eigen::Index, 64>& piece) {
-    std::array<Vec3, 64> spline{};
-    for (std::size_t p = 0; p < 64; ++p) {
-        const std::size_t i = p / 16, j = p / 4 % 4, k = p % 4;
-        const auto row = points.row(piece[p]);
-        spline[i + 4 * j + 16 * k] = {row(0), row(1), row(2)};
-    }
-    return PolynomialPart::tricubic(spline, {});
-}
-
 std::vector<Vec3> points_of(const Eigen::MatrixXd& rows) {
     std::vector<Vec3> points;
     for (Eigen::Index k = 0; k < rows.rows(); ++k) points.emplace_back(rows(k, 0), rows(k, 1), rows(k, 2));
     return points;
 }
 
-/// Tricubic Bézier points, coordinate by coordinate, in the order (4 i + j) 4 + k.
-using BezierPoints = std::array<std::array<double, 64>, 3>;
-
-template <std::size_t kStride>
-void make_bezier_along_axis(std::array<double, 64>& values) {
-    for (std::size_t block = 0; block < 64; block += 4 * kStride) {
-        for (std::size_t n = block; n < block + kStride; ++n) {
-            const double a = values[n], b = values[n + kStride], c = values[n + 2 * kStride], d = values[n + 3 * kStride];
-            values[n] = (a + 4 * b + c) * (1.0 / 6);
-            values[n + kStride] = (2 * b + c) * (1.0 / 3);
-            values[n + 2 * kStride] = (b + 2 * c) * (1.0 / 3);
-            values[n + 3 * kStride] = (b + 4 * c + d) * (1.0 / 6);
-        }
-    }
-}
-
+// points: of all pieces
 BezierPoints bezier_points(const Eigen::MatrixXd& points, const std::array<Eigen::Index, 64>& piece) {
     BezierPoints bezier;
     for (std::size_t c = 0; c < 3; ++c) {
         const double* const column = points.data() + static_cast<Eigen::Index>(c) * points.rows();
         for (std::size_t p = 0; p < 64; ++p) bezier[c][p] = column[piece[p]];
-        make_bezier_along_axis<16>(bezier[c]);
-        make_bezier_along_axis<4>(bezier[c]);
-        make_bezier_along_axis<1>(bezier[c]);
     }
+    make_bezier(bezier);
     return bezier;
 }
 
@@ -152,10 +124,13 @@ bool proves_pieces(const SplinePieces& pieces, const Eigen::MatrixXd& window, co
     constexpr int kLevels = 2;
     const Eigen::MatrixXd points = pieces.rows * window, moved = product(pieces.rows, motion);
     return std::ranges::all_of(pieces.points, [&](const std::array<Eigen::Index, 64>& piece) {
+        const BezierPoints bezier = bezier_points(points, piece);
         if (moved.rows() == 0) {
-            return passes_norm(bezier_points(points, piece), error) || is_proved(spline_part(points, piece), error, kLevels);
+            return passes_norm(bezier, error) || is_proved(PolynomialPart::tricubic(bezier, {}), error, kLevels);
         }
-        return is_proved(MovingPart(spline_part(points, piece), spline_part(moved, piece)), error, kLevels);
+        return is_proved(
+            MovingPart(PolynomialPart::tricubic(bezier, {}), PolynomialPart::tricubic(bezier_points(moved, piece), {})), error,
+            kLevels);
     });
 }
 

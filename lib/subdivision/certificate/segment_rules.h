@@ -30,6 +30,9 @@ struct DividedSegment {
     double error;
 };
 
+/// Of a segment: more take twice the time each, and hardly decide more.
+constexpr int kMostHalvings = 6;
+
 /// Halves a segment until the constants of its kind prove all parts. What is left to prove are the rings of those that were
 /// halved, which are added to `divided`. false: the parts are not proved
 ///
