@@ -55,7 +55,7 @@ class Benchmarks(unittest.TestCase):
 
 
 class Guard(unittest.TestCase):
-    def run_guard(self, folder, burnt, bytes_held):
+    def run_guard(self, folder, burnt, bytes_held, name="few kernels"):
         """Its exit code and its rows: a command against one that does as much and something beside."""
         slow = folder / "slow"
         slow.write_text(f"#!{sys.executable}\nimport time\nheld = bytearray({bytes_held})\nend = time.process_time() + {burnt}\n"
@@ -65,7 +65,7 @@ class Guard(unittest.TestCase):
         for program in (slow, quick):
             program.chmod(0o755)
         history = folder / "history.csv"
-        done = subprocess.run([sys.executable, TOP / "bench/guard", "--program", slow, "--before", quick, "--only", "folds", "--rounds", "2",
+        done = subprocess.run([sys.executable, TOP / "bench/guard", "--program", slow, "--before", quick, "--only", name, "--rounds", "2",
                                "--history", history], capture_output=True, text=True)
         with open(history, newline="") as file:
             return done.returncode, list(csv.DictReader(file))
@@ -78,12 +78,19 @@ class Guard(unittest.TestCase):
             self.assertAlmostEqual(float(rows[0]["cpu_before_s"]), .22, delta=.12)
             code, rows = self.run_guard(folder, .8, 0)
             self.assertEqual(code, 1, rows)
-            code, rows = self.run_guard(folder, .2, 50_000_000)
+            code, rows = self.run_guard(folder, .2, 80_000_000)
             self.assertEqual(code, 1, rows)
-            self.assertEqual([row["name"] for row in rows], 3 * ["folds"])
+            self.assertEqual([row["name"] for row in rows], 3 * ["few kernels"])
             self.assertGreater(float(rows[1]["cpu_ratio"]), 2)
             self.assertGreater(float(rows[2]["peak_ratio"]), 2)
-            self.assertGreater(int(rows[2]["peak_now_bytes"]) - int(rows[2]["peak_before_bytes"]), 45_000_000)
+            self.assertGreater(int(rows[2]["peak_now_bytes"]) - int(rows[2]["peak_before_bytes"]), 70_000_000)
+
+    def test_what_does_more_than_before_has_a_bound_of_its_own(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            self.assertEqual(self.run_guard(folder, .3, 0, "integrals")[0], 0)
+            code, rows = self.run_guard(folder, .8, 0, "integrals")
+            self.assertEqual(code, 1, rows)
 
 
 if __name__ == "__main__":

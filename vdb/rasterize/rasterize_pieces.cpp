@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "subvol/detail/all_cells.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/part_of_progress.h"
@@ -170,7 +171,7 @@ public:
         options.progress = options.refine.progress = progress;
         LimitCells limit;
         if (options.find_limit) {
-            limit = find_limit_cells(part.mesh, options.refine,
+            limit = find_limit_cells(part.mesh, all_cells(part.mesh), options.refine,
                                      {.position_world = kLimitTolerance_voxels * options.voxel_size_world,
                                       .max_bytes = std::numeric_limits<std::size_t>::max()},
                                      ranges_);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "box_polynomial.h"
 #include "given_figures.h"
 #include "region_extremes.h"
 #include "subvol/detail/limit_of_part.h"
@@ -37,14 +38,14 @@ struct SlicePlane {
 /// The best of the places around the best one on the plane, again and again, in steps that become shorter.
 class PlaneClimb {
 public:
-    /// cells: a flag for each cell of the probe's mesh that counts; empty: all
+    /// cells: a flag for each cell of the probe's mesh that counts
     PlaneClimb(const LimitProbe& probe, std::span<const std::uint8_t> cells, const Vec3& right, const Vec3& down)
         : probe_(probe), cells_(cells), right_(right), down_(down) {}
 
     /// Places of other cells are outside.
     [[nodiscard]] ProbeResult at(std::span<const Vec3> places) const {
         ProbeResult found = probe_.at(places);
-        if (!cells_.empty()) keep_places_in(probe_.mesh(), cells_, found);
+        keep_places_in(probe_.mesh(), cells_, found);
         return found;
     }
 
@@ -74,6 +75,48 @@ private:
     Vec3 right_, down_;  // of length 1
 };
 
+/// Some cells of a mesh with layers of others around them.
+struct CellsWithHalo {
+    detail::MeshSubset part;
+    std::vector<Index> inner;  ///< the numbers of the cells in the part, ascending
+
+    /// cells: a flag for each cell of the mesh
+    CellsWithHalo(const HexMesh& mesh, const std::vector<std::uint8_t>& cells, int layers) {
+        std::vector<std::uint8_t> grown = cells;
+        detail::grow(mesh, grown, layers);
+        part = detail::subset(mesh, grown);
+        for (std::size_t c = 0; c < part.cells.size(); ++c) {
+            if (cells[part.cells[c]] != 0) inner.push_back(static_cast<Index>(c));
+        }
+    }
+};
+
+/// Leaves those of some cells in which the limit may go beyond the values that are known.
+///
+/// cells:  a flag for each cell
+/// ranges: of the field
+void keep_cells_beyond(const HexMesh& chosen, const RefineOptions& refinement, std::span<const std::array<double, 2>> ranges,
+                       const SliceExtremes& known, std::vector<std::uint8_t>& cells) {
+    if (std::isnan(known.min.value) || std::isnan(known.max.value)) return;
+    constexpr double kTolerance = 1e-2;
+    const CellsWithHalo around(chosen, cells, detail::kHaloOfLimit);
+    const LimitCells limit =
+        detail::find_limit_cells(around.part.mesh, around.inner, refinement,
+                                 {.position_world = HUGE_VAL, .value_of_range = kTolerance, .max_levels = 4}, ranges);
+    if (!limit.pieces) return;
+    // At kinks of the limit three times as much may be left.
+    const double margin = 3 * std::max(kTolerance, limit.value_of_range) * (ranges.front()[1] - ranges.front()[0]);
+    const LimitPieces& pieces = *limit.pieces;
+    std::ranges::fill(cells, 0);
+    for (std::size_t p = 0; p < pieces.cells.size(); ++p) {
+        detail::BoxPolynomial values;
+        for (std::size_t n = 0; n < values.size(); ++n) values[n] = pieces.value(p, n, 0);
+        const detail::BoxPolynomial coefficients = detail::polynomial_through(values);
+        const auto [least, most] = std::ranges::minmax(coefficients);
+        if (least - margin < known.min.value || most + margin > known.max.value) cells[around.part.cells[pieces.cells[p]]] = 1;
+    }
+}
+
 /// The extremes on a plane, which begin with those that are known.
 ///
 /// chosen:  with the field alone
@@ -81,44 +124,41 @@ private:
 void find_on_plane(const HexMesh& chosen, const SlicePlane& plane, const LimitOptions& options,
                    std::span<const std::uint8_t> of_part, SliceExtremes& known) {
     constexpr double kTolerance = 1e-4, kWidth = 1e-9;
-    const Vec3 normal = glm::cross(plane.right, plane.down);
-    const detail::CellReaches reaches(chosen);
-    std::vector<std::uint8_t> cells(chosen.cells.size(), 0);
-    for (std::size_t c = 0; c < cells.size(); ++c)
-        cells[c] = (of_part.empty() || of_part[c] != 0) && crosses(reaches(c), plane.origin, normal) ? 1 : 0;
-    std::vector<std::uint8_t> wanted = cells;
-    detail::grow(chosen, cells, detail::kHaloOfLimit);
-    const detail::MeshSubset part = detail::subset(chosen, cells);
-
     const Attribute& field = chosen.attributes.front();
     const detail::LimitExtent extent = detail::limit_extent(chosen);
     const auto& [low, high] = extent.ranges.front();
     const double diagonal = bounds(chosen).diagonal(), range = high - low;
+    if (!(range > 0)) return;
+    const Vec3 normal = glm::cross(plane.right, plane.down);
+    const detail::CellReaches reaches(chosen);
+    std::vector<std::uint8_t> wanted(chosen.cells.size(), 0);
+    for (std::size_t c = 0; c < wanted.size(); ++c)
+        wanted[c] = (of_part.empty() || of_part[c] != 0) && crosses(reaches(c), plane.origin, normal) ? 1 : 0;
+    const RefineOptions refinement{.scheme = options.scheme, .progress = options.progress};
+    keep_cells_beyond(chosen, refinement, extent.ranges, known, wanted);
+    // Places are looked for in the cells beside those that are wanted, too.
+    const CellsWithHalo around(chosen, wanted, 1 + detail::kHaloOfLimit);
+    const detail::MeshSubset& part = around.part;
     const LimitCells limit = detail::find_limit_cells(
-        part.mesh, {.scheme = options.scheme, .progress = options.progress},
+        part.mesh, around.inner, refinement,
         {.position_world = kTolerance * diagonal, .value_of_range = kTolerance, .max_levels = 4}, extent.ranges);
-    if (!limit.pieces || !(range > 0)) return;
-    std::vector<Index> groups;  // 0 of cells about the plane, 1 of the halo
-    for (const Index cell : part.cells) groups.push_back(wanted[cell] != 0 ? 0 : 1);
+    if (!limit.pieces) return;
     const Vec3 little = kWidth * diagonal * normal;
     const std::array<Region, 2> slab{half_space(plane.origin - little, normal), half_space(plane.origin + little, -normal)};
 
     const LimitProbe probe(part.mesh, {.limit = options});
     std::vector<std::uint8_t> counts;
-    for (const Index cell : part.cells) {
-        if (!of_part.empty()) counts.push_back(of_part[cell]);
-    }
+    for (const Index cell : part.cells) counts.push_back(wanted[cell]);
     const PlaneClimb climber(probe, counts, plane.right, plane.down);
     for (const double sign : {-1.0, 1.0}) {
         LimitExtreme& best = sign > 0 ? known.max : known.min;
         double& value = best.value;
         Vec3& place = best.place;
         detail::RegionExtreme extreme;
-        extreme.part = 0;
         extreme.sign = sign;
         if (!field.bounds.empty()) extreme.limit = sign > 0 ? field.bounds[0][1] : -field.bounds[0][0];
         extreme.best.value = -sign * HUGE_VAL;
-        detail::find_extreme(*limit.pieces, slab, groups, kTolerance * range, extreme);
+        detail::find_extreme(*limit.pieces, slab, {}, kTolerance * range, extreme);
         double piece = diagonal / 64;
         Vec3 start = place;
         double found = value;

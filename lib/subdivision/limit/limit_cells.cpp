@@ -530,24 +530,23 @@ std::size_t cells_of_run(std::size_t cells, std::size_t runs) {
     return (cells / runs / CellRefiner::kRun + 1) * CellRefiner::kRun;
 }
 
-/// ranges: null: those of the mesh
-LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
-                  const std::span<const std::array<double, 2>>* ranges = nullptr) {
-    const std::size_t count = mesh.cells.size();
+/// cells:  ascending
+/// ranges: of the attributes
+LimitCells search(const HexMesh& mesh, std::span<const Index> cells, RefineOptions refinement, const LimitCellsOptions& options,
+                  std::span<const std::array<double, 2>> ranges) {
+    const std::size_t count = cells.size();
     if (count == 0 || options.max_levels < 1) {
         return {.cell_levels = {}, .converged = count == 0};
     }
     validate(mesh);
     refinement.levels = 1;
-    const FloatValues floats = ranges != nullptr ? FloatValues(mesh, *ranges) : FloatValues(mesh, limit_extent(mesh).ranges);
-    Search search(mesh, refinement, options, floats);
-    const std::vector<Index> cells = all_cells(mesh);
+    Search search(mesh, refinement, options, FloatValues(mesh, ranges));
     constexpr std::size_t kRuns = 8;
     const std::size_t size = cells_of_run(count, kRuns);
     auto pieces = std::make_shared<LimitPieces>();
     for (std::size_t first = 0; first < count; first += size) {
         PartOfProgress of_run(refinement.progress, "limit", first / size, (count + size - 1) / size);
-        search.run(std::span(cells).subspan(first, std::min(size, count - first)), &of_run);
+        search.run(cells.subspan(first, std::min(size, count - first)), &of_run);
         if (!search.has_pieces()) pieces.reset();
         if (pieces) search.collect(*pieces, pieces->cells.size());
         search.clear();
@@ -561,18 +560,18 @@ LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCell
 }  // namespace
 
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options) {
-    return search(mesh, refinement, options);
+    return search(mesh, all_cells(mesh), refinement, options, limit_extent(mesh).ranges);
 }
 
-LimitCells detail::find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
-                                    std::span<const std::array<double, 2>> ranges) {
-    return search(part, refinement, options, &ranges);
+LimitCells detail::find_limit_cells(const HexMesh& part, std::span<const Index> cells, RefineOptions refinement,
+                                    const LimitCellsOptions& options, std::span<const std::array<double, 2>> ranges) {
+    return search(part, cells, refinement, options, ranges);
 }
 
 LimitCells visit_limit_pieces(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
                               const std::function<void(const LimitPieces&)>& take) {
     constexpr std::size_t kParts = 16, kMost = std::size_t{1} << 19;
-    if (mesh.cells.empty() || options.max_levels < 1) return search(mesh, refinement, options);
+    if (mesh.cells.empty() || options.max_levels < 1) return find_limit_cells(mesh, refinement, options);
     validate(mesh);
     refinement.levels = 1;
     LimitCellsOptions without_limit = options;

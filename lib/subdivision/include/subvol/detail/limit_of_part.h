@@ -31,12 +31,13 @@ struct LimitExtent {
 /// The length of its extent.
 [[nodiscard]] double tolerance_length(const HexMesh& mesh);
 
-/// `find_limit_cells` for a part of a mesh: its cells are cut as in the whole mesh, as values are compared with their ranges
-/// there.
+/// `find_limit_cells` for some cells of a part of a mesh: they are cut as in the whole mesh, as values are compared with their
+/// ranges there.
 ///
+/// cells:  those that are cut, ascending; the others only lie around them
 /// ranges: least and largest value of each attribute in the whole mesh, of all channels together
-[[nodiscard]] LimitCells find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
-                                          std::span<const std::array<double, 2>> ranges);
+[[nodiscard]] LimitCells find_limit_cells(const HexMesh& part, std::span<const Index> cells, RefineOptions refinement,
+                                          const LimitCellsOptions& options, std::span<const std::array<double, 2>> ranges);
 
 /// `on_limit` of a part of a mesh. Points whose cells are all in the part get the bits that they have in the whole mesh.
 [[nodiscard]] HexMesh on_limit_of_part(HexMesh part, Scheme scheme);
