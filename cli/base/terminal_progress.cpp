@@ -16,6 +16,7 @@ constexpr std::size_t kBarWidth = 24, kStageWidth = 26;
 constexpr double kRedraw_s = .08, kTick_s = .2;
 constexpr double kWindow_s = 8;      // of the past that an estimate looks at
 constexpr double kLeastPast_s = .4;  // before there is one
+constexpr double kStart_s = 3;       // what there is to do before the first report may take most of it
 constexpr double kLong_s = 10;       // what is worth a hint
 
 }  // namespace
@@ -45,10 +46,14 @@ void Pace::add(double seconds, double fraction) {
 }
 
 double Pace::left() const {
-    if (past_.empty()) return -1;
-    const double seconds = past_.back().seconds - past_.front().seconds, done = past_.back().fraction - past_.front().fraction;
-    if (seconds < kLeastPast_s || done <= 0) return -1;
-    return (1 - past_.back().fraction) * seconds / done;
+    const auto since = [&](const Mark& first, double least_s) {
+        const double seconds = past_.back().seconds - first.seconds, done = past_.back().fraction - first.fraction;
+        return seconds < least_s || done <= 0 ? -1 : (1 - past_.back().fraction) * seconds / done;
+    };
+    const auto begun = std::ranges::find_if(past_, [](const Mark& mark) { return mark.fraction > 0; });
+    if (begun == past_.end()) return -1;
+    const double left = since(*begun, kLeastPast_s);
+    return left >= 0 ? left : since(past_.front(), kStart_s);
 }
 
 TerminalProgress::TerminalProgress(bool visible) : visible_(visible) {

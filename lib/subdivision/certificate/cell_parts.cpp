@@ -363,14 +363,51 @@ void make_bezier(BezierPoints& points) {
     }
 }
 
-PolynomialPart PolynomialPart::tricubic(std::span<const Vec3, 64> points, const PartFrame& frame) {
+namespace {
+
+// Places of one coordinate, of which 4 lie along the axis.
+template <std::size_t kStride>
+std::array<double, 48> slopes_along_axis(const std::array<double, 64>& values) {
+    std::array<double, 48> slopes;
+    for (std::size_t block = 0, to = 0; block < 64; block += 4 * kStride) {
+        for (std::size_t n = block; n < block + 3 * kStride; ++n, ++to) slopes[to] = 3 * (values[n + kStride] - values[n]);
+    }
+    return slopes;
+}
+
+}  // namespace
+
+PartSlopes<48> slopes_of(const BezierPoints& points) {
+    PartSlopes<48> slopes;
+    for (std::size_t c = 0; c < 3; ++c) {
+        slopes[0][c] = slopes_along_axis<16>(points[c]);
+        slopes[1][c] = slopes_along_axis<4>(points[c]);
+        slopes[2][c] = slopes_along_axis<1>(points[c]);
+    }
+    return slopes;
+}
+
+PartSlopes<4> slopes_of(std::span<const Vec3, 8> corners) {
+    constexpr std::array<std::array<std::array<std::size_t, 2>, 4>, 3> kEdges{
+        {{{{0, 1}, {3, 2}, {4, 5}, {7, 6}}}, {{{0, 3}, {1, 2}, {4, 7}, {5, 6}}}, {{{0, 4}, {1, 5}, {2, 6}, {3, 7}}}}};
+    PartSlopes<4> slopes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 slope = corners[kEdges[axis][k][1]] - corners[kEdges[axis][k][0]];
+            for (int c = 0; c < 3; ++c) slopes[axis][static_cast<std::size_t>(c)][k] = slope[c];
+        }
+    }
+    return slopes;
+}
+
+BezierPoints bezier_of_spline_points(std::span<const Vec3, 64> points) {
     BezierPoints bezier;
     for (std::size_t p = 0; p < 64; ++p) {
         const Vec3& x = points[p / 16 + p / 4 % 4 * 4 + p % 4 * 16];
         for (std::size_t c = 0; c < 3; ++c) bezier[c][p] = x[static_cast<int>(c)];
     }
     make_bezier(bezier);
-    return tricubic(bezier, frame);
+    return bezier;
 }
 
 PolynomialPart PolynomialPart::tricubic(const BezierPoints& points, const PartFrame& frame) {

@@ -63,6 +63,12 @@ using BezierPoints = std::array<std::array<double, 64>, 3>;
 
 /// Makes them of the points of a uniform cubic spline in the same order.
 void make_bezier(BezierPoints& points);
+/// The same of points (i, j, k) at i + 4j + 16k.
+[[nodiscard]] BezierPoints bezier_of_spline_points(std::span<const Vec3, 64> points);
+
+/// The derivatives of a tricubic piece, and of the trilinear cell with these corners, in VTK's order.
+[[nodiscard]] PartSlopes<48> slopes_of(const BezierPoints& points);
+[[nodiscard]] PartSlopes<4> slopes_of(std::span<const Vec3, 8> corners);
 
 /// A cell whose derivatives are polynomials, or one of its descendants.
 class PolynomialPart {
@@ -73,8 +79,6 @@ public:
     [[nodiscard]] static PolynomialPart trilinear(std::span<const Vec3, 8> corners, const PartFrame& frame);
     /// A tricubic piece.
     [[nodiscard]] static PolynomialPart tricubic(const BezierPoints& points, const PartFrame& frame);
-    /// The tricubic B-spline of 4×4×4 points, point (i, j, k) at i + 4j + 16k.
-    [[nodiscard]] static PolynomialPart tricubic(std::span<const Vec3, 64> points, const PartFrame& frame);
 
     [[nodiscard]] const PartFrame& frame() const { return frame_; }
     [[nodiscard]] PartJacobians corners() const;

@@ -179,12 +179,16 @@ public:
     /// Decides a cell of the level; nothing if it has no grid.
     [[nodiscard]] std::optional<PartResult> decide(Index cell, const PartFrame& frame, const Limits& limits) const {
         if (scheme_ == Scheme::Linear) {
-            const auto part_of = [&](const auto& place_of) {
+            const auto corners_of = [&](const auto& place_of) {
                 std::array<Vec3, 8> corners;
                 for (std::size_t k = 0; k < 8; ++k) corners[k] = place_of(mesh_.cells[cell][k]);
-                return PolynomialPart::trilinear(corners, frame);
+                return corners;
             };
-            return decide_parts(cell, part_of, limits);
+            if (passes_at_once(
+                    cell, [&](const auto& place_of) { return slopes_of(corners_of(place_of)); }, limits))
+                return passed();
+            return decide_parts(
+                cell, [&](const auto& place_of) { return PolynomialPart::trilinear(corners_of(place_of), frame); }, limits);
         }
         return scheme_ == Scheme::Mcq ? decide_window(cell, frame, limits) : decide_spline(cell, frame, limits);
     }
@@ -214,6 +218,15 @@ private:
         auto middle = part_of([&](Index p) { return place(cell, p); });
         if (!moves()) return decide_part(std::move(middle), limits);
         return decide_part(MovingPart(std::move(middle), part_of([&](Index p) { return motion_of(cell, p); })), limits);
+    }
+
+    [[nodiscard]] static PartResult passed() { return {.fold = {}, .tests = 1}; }
+
+    // Most cells that do not move pass one test. slopes_at: the derivatives that the places of the points give
+    template <class SlopesOf>
+    [[nodiscard]] bool passes_at_once(Index cell, const SlopesOf& slopes_at, const Limits& limits) const {
+        if (moves() || limits.effort == FoldEffort::Witness || limits.tests == 0) return false;
+        return passes_norm(slopes_at([&](Index p) { return place(cell, p); }), limits.error);
     }
 
     // proves(time): whether a window is proved if it moves for that part of the time
@@ -260,9 +273,9 @@ private:
         if (!regular_grid(topology_, cell, grid)) {
             // Proved at once with all other cells at its segment of an irregular edge, or at its irregular point; or left.
             const bool is_proved = is_at_proved_segment(cell, limits) || is_at_proved_point(cell, limits);
-            return is_proved ? std::optional(PartResult{{}, 0, 1, 0}) : std::nullopt;
+            return is_proved ? std::optional(passed()) : std::nullopt;
         }
-        const auto part_of = [&](const auto& place_of) {
+        const auto bezier_of = [&](const auto& place_of) {
             std::array<Vec3, 64> points{};
             for (std::size_t n = 0; n < 64; ++n) {
                 if (grid[n] != kNone) points[n] = place_of(grid[n]);
@@ -277,9 +290,13 @@ private:
                     if (high && at == 3) points[n] = points[n - stride] * 2.0 - points[n - 2 * stride];
                 }
             }
-            return PolynomialPart::tricubic(points, frame);
+            return bezier_of_spline_points(points);
         };
-        return decide_parts(cell, part_of, limits);
+        if (passes_at_once(
+                cell, [&](const auto& place_of) { return slopes_of(bezier_of(place_of)); }, limits))
+            return passed();
+        return decide_parts(
+            cell, [&](const auto& place_of) { return PolynomialPart::tricubic(bezier_of(place_of), frame); }, limits);
     }
 
     // The volume of BSXW goes on straight beyond the boundary, as splines of a grid do; that of Catmull-Clark does not.
@@ -404,7 +421,7 @@ FoldChecker::FoldChecker(const HexMesh& mesh, const FoldOptions& options) : mesh
     if (scheme_.crease_angle_deg) tag_creases(mesh_, *scheme_.crease_angle_deg);
     scheme_.crease_angle_deg.reset();
     if (scheme_.kind == Scheme::Mcq && scheme_.tension == 0) scheme_.kind = Scheme::Linear;
-    cells_.resize(mesh_.cells.size());
+    states_.cells.resize(mesh_.cells.size());
 }
 
 void FoldChecker::move_straight(std::vector<Vec3> middle, const std::vector<Vec3>& motion, int halvings) {
@@ -416,7 +433,7 @@ void FoldChecker::move_straight(std::vector<Vec3> middle, const std::vector<Vec3
 }
 
 void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
-    for (const Index cell : cells) cells_[cell] = {};
+    for (const Index cell : cells) forget(cell);
     std::vector<OpenCell> irregular;
     {
         const Grids grids(mesh_, scheme_.kind);
@@ -436,7 +453,7 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
                 if (results[k]) {
                     add(cell, *results[k]);
                 } else {
-                    cells_[cell].moves = cells_[cell].moves || grids.is_open_for_motion(cell);
+                    states_.cells[cell].moves = states_.cells[cell].moves || grids.is_open_for_motion(cell);
                     irregular.push_back({cell, cell, {}});
                 }
             }
@@ -446,8 +463,11 @@ void FoldChecker::check(std::span<const Index> cells, FoldEffort effort) {
     if (effort == FoldEffort::Whole && mesh_.attributes.empty()) sample(cells);
     if (effort != FoldEffort::Verdict) return;
     // What remains is decided after all where no descendant is irregular.
-    std::erase_if(irregular, [&](const OpenCell& at) { return cells_[at.control].fold || cells_[at.control].irregular > 0; });
-    for (const OpenCell& at : irregular) cells_[at.control] = {};
+    std::erase_if(irregular, [&](const OpenCell& at) {
+        const CellState& cell = states_.cells[at.control];
+        return cell.is_folded || cell.irregular > 0;
+    });
+    for (const OpenCell& at : irregular) forget(at.control);
     descend_together(irregular, effort);
 }
 
@@ -460,23 +480,35 @@ void FoldChecker::descend_together(const std::vector<OpenCell>& irregular, FoldE
     }
 }
 
+void FoldChecker::forget(Index cell) {
+    states_.cells[cell] = {};
+    states_.folds.erase(cell);
+    states_.samples.erase(cell);
+}
+
+void FoldChecker::add_fold(const FoldPlace& fold) {
+    states_.cells[fold.cell].is_folded = true;
+    states_.folds[fold.cell] = fold;
+}
+
 void FoldChecker::add(Index control, const PartResult& result, int level) {
-    CellState& cell = cells_[control];
+    CellState& cell = states_.cells[control];
     cell.open += result.open;
     cell.tests += result.tests;
     cell.moves = cell.moves || result.moves;
     tests_ += result.tests;
     cell.deepest = std::max(cell.deepest, level + result.deepest);
-    if (result.fold && !cell.fold) {
-        cell.fold = result.fold;
-        cell.fold->cell = control;
+    if (result.fold && !cell.is_folded) {
+        FoldPlace fold = *result.fold;
+        fold.cell = control;
+        add_fold(fold);
     }
 }
 
 // open: cells of a level, all of which are descendants of cells at irregular edges
 void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort) {
     if (level >= options_.irregular_levels) {
-        for (const OpenCell& at : open) cells_[at.control].irregular += volume_of(at.frame);
+        for (const OpenCell& at : open) states_.cells[at.control].irregular += volume_of(at.frame);
         return;
     }
     if (open.empty()) return;
@@ -507,12 +539,12 @@ void FoldChecker::descend(const HexMesh& mesh, std::vector<OpenCell> open, int l
         if (results[n]) {
             add(child.control, *results[n], level + 1);
         } else {
-            CellState& state = cells_[child.control];
+            CellState& state = states_.cells[child.control];
             state.moves = state.moves || grids.is_open_for_motion(child.cell);
             next.push_back(child);
         }
     }
-    std::erase_if(next, [&](const OpenCell& at) { return cells_[at.control].fold.has_value(); });
+    std::erase_if(next, [&](const OpenCell& at) { return states_.cells[at.control].is_folded; });
     descend(fine, std::move(next), level + 1, effort);
 }
 
@@ -524,16 +556,15 @@ void FoldChecker::sample(std::span<const Index> cells) {
     }
     const std::vector<CellSamples> samples = sample_folds(mesh_, undecided, scheme_, options_.progress);
     for (std::size_t k = 0; k < undecided.size(); ++k) {
-        CellState& cell = cells_[undecided[k]];
-        cell.samples = samples[k];
+        states_.samples[undecided[k]] = samples[k];
         tests_ += samples[k].places;  // a place takes about as long as a test
-        if (samples[k].least.determinant < 0) cell.fold = samples[k].least;
+        if (samples[k].least.determinant < 0) add_fold(samples[k].least);
     }
 }
 
 FoldVerdict FoldChecker::verdict(Index number) const {
-    const CellState& cell = cells_[number];
-    return cell.fold            ? FoldVerdict::Folded
+    const CellState& cell = states_.cells[number];
+    return cell.is_folded       ? FoldVerdict::Folded
            : cell.irregular > 0 ? FoldVerdict::Irregular
            : cell.open > 0      ? FoldVerdict::Open
                                 : FoldVerdict::Proved;
@@ -551,27 +582,20 @@ void FoldChecker::count_kinds(const std::vector<FoldVerdict>& verdicts, FoldRepo
 
 FoldCheck FoldChecker::found() const {
     FoldCheck check;
-    check.verdicts.reserve(cells_.size());
-    check.open.reserve(cells_.size());
+    check.verdicts.reserve(states_.cells.size());
+    check.open.reserve(states_.cells.size());
     FoldReport& report = check.report;
     double least = std::numeric_limits<double>::infinity(), size = 0;
-    for (Index c = 0; c < cells_.size(); ++c) {
-        const CellState& cell = cells_[c];
+    for (Index c = 0; c < states_.cells.size(); ++c) {
+        const CellState& cell = states_.cells[c];
         check.verdicts.push_back(verdict(c));
-        check.open.push_back(cell.fold ? 0 : cell.open + cell.irregular);
+        check.open.push_back(cell.is_folded ? 0 : cell.open + cell.irregular);
         report.tests += cell.tests;
         report.deepest = std::max(report.deepest, cell.deepest);
-        if (cell.samples.places > 0) {
-            ++report.sampled.cells;
-            report.sampled.places += cell.samples.places;
-            report.sampled.folded += cell.fold ? 1 : 0;
-            least = std::min(least, cell.samples.least.determinant);
-            size += cell.samples.size;
-        }
         switch (check.verdicts.back()) {
             case FoldVerdict::Folded:
                 ++report.folded;
-                check.places.push_back(*cell.fold);
+                check.places.push_back(states_.folds.at(c));
                 break;
             case FoldVerdict::Irregular:
                 ++report.irregular;
@@ -583,9 +607,16 @@ FoldCheck FoldChecker::found() const {
                 ++report.proved;
                 break;
         }
-        if (cell.fold) continue;
+        if (cell.is_folded) continue;
         report.open_volume += cell.open;
         report.irregular_volume += cell.irregular;
+    }
+    for (const auto& [c, samples] : states_.samples) {
+        ++report.sampled.cells;
+        report.sampled.places += samples.places;
+        report.sampled.folded += states_.cells[c].is_folded ? 1 : 0;
+        least = std::min(least, samples.least.determinant);
+        size += samples.size;
     }
     count_kinds(check.verdicts, report);
     if (size > 0) report.sampled.least = least * static_cast<double>(report.sampled.places) / size;

@@ -80,13 +80,13 @@ private:
         std::vector<Index> open;
         std::vector<FoldPlace> places;
         for (const Index c : stretch.cells) {
-            const FoldChecker::CellState& state = checker_.states()[c];
+            const FoldChecker::CellState& state = checker_.states().cells[c];
             result_.report.deepest = std::max(result_.report.deepest, state.deepest);
             const FoldVerdict verdict = checker_.verdict(c);
             if (verdict == FoldVerdict::Proved) continue;
             if (verdict == FoldVerdict::Folded) {
                 result_.verdicts[c] = verdict;
-                places.push_back(*state.fold);
+                places.push_back(checker_.states().folds.at(c));
                 places.back().time = middle;
             } else if (halvings > 0 && state.moves) {
                 open.push_back(c);

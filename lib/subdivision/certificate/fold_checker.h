@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -53,21 +54,26 @@ public:
 
     /// What is known of a cell.
     struct CellState {
-        std::optional<FoldPlace> fold;
         double open = 0;
         double irregular = 0;  ///< the volume that touches irregular edges and is not decided
         std::size_t tests = 0;
         int deepest = 0;
         bool moves = false;  ///< it may be proved for shorter times
-        CellSamples samples;
+        bool is_folded = false;
     };
-    [[nodiscard]] const std::vector<CellState>& states() const { return cells_; }
+    /// What is known of all cells. Few have a fold or samples.
+    struct States {
+        std::vector<CellState> cells;
+        std::map<Index, FoldPlace> folds;
+        std::map<Index, CellSamples> samples;
+    };
+    [[nodiscard]] const States& states() const { return states_; }
 
     /// Finds the positions of places in the cells.
     void place(std::vector<FoldPlace>& places) const;
 
     /// Goes back to what was known with points that have been moved to again.
-    void restore(std::vector<CellState> states) { cells_ = std::move(states); }
+    void restore(States states) { states_ = std::move(states); }
 
 private:
     /// A descendant of a control cell that is not decided: its number in its level.
@@ -82,7 +88,9 @@ private:
     [[nodiscard]] static PartResult decide_part(Part part, const Limits& limits);
     [[nodiscard]] static std::vector<Index> with_neighbors(const HexMesh& mesh, const std::vector<OpenCell>& open, int layers);
 
+    void forget(Index cell);
     void add(Index control, const PartResult& result, int level = 0);
+    void add_fold(const FoldPlace& fold);
     void descend_together(const std::vector<OpenCell>& irregular, FoldEffort effort);
     void descend(const HexMesh& mesh, std::vector<OpenCell> open, int level, FoldEffort effort);
     void sample(std::span<const Index> cells);
@@ -90,7 +98,7 @@ private:
     HexMesh mesh_;  // its only attribute, if any, is the motion of its points
     const FoldOptions& options_;
     SchemeOptions scheme_;
-    std::vector<CellState> cells_;
+    States states_;
     std::size_t tests_ = 0;
     int halvings_ = 0;  // of the time that may follow
 };

@@ -98,4 +98,45 @@ bool is_positive(PartDerivatives scaled, const Vec3& slack) {
     return norm_of(scaled.columns, scaled.rest) < 1 || has_positive_determinant(scaled.columns, scaled.rest);
 }
 
+template <std::size_t kCoefficients>
+bool passes_norm(const PartSlopes<kCoefficients>& slopes, double error) {
+    // Any matrix will do as G; this one is near the derivatives in the middle.
+    Mat3 center;
+    Vec3 size(0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            double sum = 0, most = 0;
+            for (const double slope : slopes[axis][c]) {
+                sum += slope;
+                most = std::max(most, std::abs(slope));
+            }
+            center[static_cast<int>(axis)][static_cast<int>(c)] = sum / kCoefficients;
+            size[static_cast<int>(c)] = std::max(size[static_cast<int>(c)], most);
+        }
+    }
+    const auto scale = part_scale(center, size, error);
+    if (!scale) return false;
+    Vec3 sums = scale->slack * 3.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (int row = 0; row < 3; ++row) {
+            const double h0 = scale->inverse[0][row], h1 = scale->inverse[1][row], h2 = scale->inverse[2][row];
+            const double unit = static_cast<int>(axis) == row ? 1 : 0;
+            constexpr std::size_t kLanes = std::min<std::size_t>(8, kCoefficients);
+            std::array<double, kLanes> most{};
+            for (std::size_t k = 0; k < kCoefficients; k += kLanes) {
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const double away = std::abs(h0 * slopes[axis][0][k + lane] + h1 * slopes[axis][1][k + lane] +
+                                                 h2 * slopes[axis][2][k + lane] - unit);
+                    most[lane] = away > most[lane] ? away : most[lane];
+                }
+            }
+            sums[row] += *std::ranges::max_element(most);
+        }
+    }
+    return sums.x < 1 && sums.y < 1 && sums.z < 1;
+}
+
+template bool passes_norm<4>(const PartSlopes<4>&, double);
+template bool passes_norm<48>(const PartSlopes<48>&, double);
+
 }  // namespace subvol::detail

@@ -55,6 +55,14 @@ struct PartScale {
 /// Whether one of the first two tests is passed. scaled: in the coordinates of H, without the slack
 [[nodiscard]] bool is_positive(PartDerivatives scaled, const Vec3& slack);
 
+/// Coefficients of derivatives that are polynomials: for each axis and coordinate.
+template <std::size_t kCoefficients>
+using PartSlopes = std::array<std::array<std::array<double, kCoefficients>, 3>, 3>;
+
+/// The first test of `decide` alone, which most parts pass, without a part being made. Made for 4 and 48 coefficients.
+template <std::size_t kCoefficients>
+[[nodiscard]] bool passes_norm(const PartSlopes<kCoefficients>& slopes, double error);
+
 template <class Part>
 PartDecision decide(const Part& part, double error) {
     const auto scale = part_scale(part.center(), part.size(), error);

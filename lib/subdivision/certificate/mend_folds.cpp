@@ -134,13 +134,13 @@ private:
     /// Points, and what is known with them: to find it again would cost another check.
     struct Found {
         std::vector<Vec3> points;
-        std::vector<FoldChecker::CellState> cells;
+        FoldChecker::States states;
         std::vector<std::uint8_t> stale;
     };
 
     void restore(Found found) {
         checker_.move(found.points);
-        checker_.restore(std::move(found.cells));
+        checker_.restore(std::move(found.states));
         mesh_.points = std::move(found.points);
         stale_ = std::move(found.stale);
     }
