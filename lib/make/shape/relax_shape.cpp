@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "distortion.h"
+#include "flatness.h"
 #include "shape_fitter.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/transposed_table.h"
@@ -67,15 +68,24 @@ public:
                     for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = x[static_cast<int>(axis)];
                 }
                 to.back() += part * distortion_of(corners, epsilon_, by_corners);
-                const double scale = scales_[c] * part;
-                for (std::size_t k = 0; k < 8; ++k) {
-                    for (std::size_t axis = 0; axis < 3; ++axis) to[3 * cell[k] + axis] += scale * by_corners[axis][k];
-                }
+                add_slopes(cell, scales_[c] * part, by_corners, to);
             });
-        const double distortions = slopes.back();
+        double shapes = slopes.back();
         slopes.pop_back();
         std::vector<double> sums = std::move(slopes);
         for (const StencilTable& table : fitter_.children_.levels) sums = apply_transpose(table, sums, 3);
+        const std::vector<double> of_cells =
+            parallel_sums(3 * count + 1, fitter_.cells_.size(), [&](std::size_t c, std::vector<double>& to) {
+                const auto& cell = fitter_.cells_[c];
+                CornerCoordinates corners, by_corners;
+                for (std::size_t k = 0; k < 8; ++k) {
+                    for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = points[cell[k]][static_cast<int>(axis)];
+                }
+                to.back() += kFlat * flatness_of(corners, kLeast, by_corners);
+                add_slopes(cell, kFlat, by_corners, to);
+            });
+        shapes += of_cells.back();
+        for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += of_cells[k];
         const std::vector<Vec3> boundary_ways = fitter_.matrix_.apply(ways);
         const auto rest = [&](const Pull& pull, const Vec3& way) {
             return glm::dot(pull.direction, way) + pull.distance / side_;
@@ -87,7 +97,7 @@ public:
             const double far = rest(pull, way);
             distances += pull.weight * (far * far + kSliding * glm::dot(way, way));
         }
-        *cost = distortions + weight_ * distances;
+        *cost = shapes + weight_ * distances;
         if (gradient != nullptr) {
             const std::vector<Vec3> forces = fitter_.gathered(pulls_, [&](const Pull& pull) {
                 const Vec3 way = pull.sum_of(boundary_ways);
@@ -103,6 +113,17 @@ public:
     }
 
 private:
+    // Corners of control cells with a scaled Jacobian below the least one cost something. Their weight stays, so that in the
+    // last rounds the distances count more.
+    static constexpr double kLeast = 0.4, kFlat = 30;
+
+    static void add_slopes(const std::array<Index, 8>& cell, double scale, const CornerCoordinates& slopes,
+                           std::vector<double>& to) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis) to[3 * cell[k] + axis] += scale * slopes[axis][k];
+        }
+    }
+
     /// How many children a cell has along an edge.
     [[nodiscard]] double parts() const { return fitter_.children_.levels.empty() ? 1 : 2; }
 
