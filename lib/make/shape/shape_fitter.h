@@ -49,8 +49,8 @@ public:
     /// The points with less distorted cells and the boundary nearer to the surface, by quasi-Newton steps. Cells that are
     /// turned inside out are turned back where they can be.
     ///
-    /// The distortion is that of the children of cells; of the linear scheme that of the cells. Flat corners of control cells are
-    /// raised besides (flatness.h).
+    /// The distortion is that of the children of cells; of the linear scheme that of the cells. Flat corners of control cells
+    /// are raised besides (flatness.h).
     ///
     /// sides:  of each cell, if it were not distorted at all
     /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
