@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plane is a region of almost no width: what lies between two half spaces. Its extremes are found as those of any other
-// region, in pieces of the cells about the plane, and then followed in the limit:
+// region, in pieces of those cells about the plane that may go beyond the picture's values, and then followed in the limit:
 //
 //     ── half ──   pieces within 1e-4 of the range    ──►  the best place  ──►  8 places around it on the plane, nearer and
 //     ── half ──                                                                nearer, in the limit
