@@ -62,11 +62,8 @@ public:
         std::vector<double> slopes =
             parallel_sums(3 * children.size() + 1, fitter_.children_.cells.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.children_.cells[c];
-                CornerCoordinates corners, by_corners;
-                for (std::size_t k = 0; k < 8; ++k) {
-                    const Vec3 x = scales_[c] * children[cell[k]];
-                    for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = x[static_cast<int>(axis)];
-                }
+                CornerCoordinates by_corners;
+                const CornerCoordinates corners = corners_of(cell, children, scales_[c]);
                 to.back() += part * distortion_of(corners, epsilon_, by_corners);
                 add_slopes(cell, scales_[c] * part, by_corners, to);
             });
@@ -77,11 +74,8 @@ public:
         const std::vector<double> of_cells =
             parallel_sums(3 * count + 1, fitter_.cells_.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.cells_[c];
-                CornerCoordinates corners, by_corners;
-                for (std::size_t k = 0; k < 8; ++k) {
-                    for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = points[cell[k]][static_cast<int>(axis)];
-                }
-                to.back() += kFlat * flatness_of(corners, kLeast, by_corners);
+                CornerCoordinates by_corners;
+                to.back() += kFlat * flatness_of(corners_of(cell, points, 1), kLeast, by_corners);
                 add_slopes(cell, kFlat, by_corners, to);
             });
         shapes += of_cells.back();
@@ -116,6 +110,15 @@ private:
     // Corners of control cells with a scaled Jacobian below the least one cost something. Their weight stays, so that in the
     // last rounds the distances count more.
     static constexpr double kLeast = 0.4, kFlat = 30;
+
+    static CornerCoordinates corners_of(const std::array<Index, 8>& cell, const std::vector<Vec3>& points, double scale) {
+        CornerCoordinates corners;
+        for (std::size_t k = 0; k < 8; ++k) {
+            const Vec3 x = scale * points[cell[k]];
+            for (std::size_t axis = 0; axis < 3; ++axis) corners[axis][k] = x[static_cast<int>(axis)];
+        }
+        return corners;
+    }
 
     static void add_slopes(const std::array<Index, 8>& cell, double scale, const CornerCoordinates& slopes,
                            std::vector<double>& to) {

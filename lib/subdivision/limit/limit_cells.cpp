@@ -538,7 +538,6 @@ LimitCells search(const HexMesh& mesh, std::span<const Index> cells, RefineOptio
     if (count == 0 || options.max_levels < 1) {
         return {.cell_levels = {}, .converged = count == 0};
     }
-    validate(mesh);
     refinement.levels = 1;
     Search search(mesh, refinement, options, FloatValues(mesh, ranges));
     constexpr std::size_t kRuns = 8;
@@ -560,11 +559,14 @@ LimitCells search(const HexMesh& mesh, std::span<const Index> cells, RefineOptio
 }  // namespace
 
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options) {
+    if (mesh.cells.empty() || options.max_levels < 1) return {.cell_levels = {}, .converged = mesh.cells.empty()};
+    validate(mesh);  // before its ranges are taken
     return search(mesh, all_cells(mesh), refinement, options, limit_extent(mesh).ranges);
 }
 
 LimitCells detail::find_limit_cells(const HexMesh& part, std::span<const Index> cells, RefineOptions refinement,
                                     const LimitCellsOptions& options, std::span<const std::array<double, 2>> ranges) {
+    validate(part);
     return search(part, cells, refinement, options, ranges);
 }
 

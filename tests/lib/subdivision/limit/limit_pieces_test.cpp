@@ -10,6 +10,7 @@
 
 #include "lib/test_meshes.h"
 #include "subvol/dense_cells.h"
+#include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
@@ -197,6 +198,14 @@ TEST(LimitPieces, BelongToOneMesh) {
     EXPECT_FALSE(place_in(*limit.pieces, other.attributes[0]));
     other.points[3].z += 1e-9;
     EXPECT_FALSE(are_pieces_of(*limit.pieces, other));
+}
+
+TEST(LimitPieces, OfMeshesThatAreNone) {
+    EXPECT_TRUE(find_limit_cells({}, {}, {}).converged);
+    HexMesh mesh = make_model("twist", 2);
+    EXPECT_FALSE(find_limit_cells(mesh, {}, {.max_levels = 0}).converged);
+    mesh.cells[3][5] = static_cast<Index>(mesh.points.size()) + 1000;
+    EXPECT_THROW((void)find_limit_cells(mesh, {}, {}), Error);
 }
 
 }  // namespace limit_pieces_test
