@@ -69,7 +69,7 @@ public:
                "rms_boundary, max, max_at, range, rms_between, max_between, max_between_at, beyond}, points, cells; of several "
                "steps or frames these are in the list frames, with frame, time and output, "
                "beside placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their places; "
-               "rounds, moved_world, folds, mended}.") {
+               "rounds, moved_world, volume_world, folds, mended}.") {
         add_input(app(), "DATA", input_,
                   "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
                   "(.csv, .txt) of x, y, z and values, or "

@@ -39,7 +39,9 @@ public:
                "all the same.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
                "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; missed_rms, "
-               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, folds (as of check), mended, "
+               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, volume_world (that the limit "
+               "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
+               "mended, "
                "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
                "creases, rms, max: of the creases from the chains}, parts, added, refined, divided, side_world, "
                "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
@@ -114,6 +116,9 @@ private:
         if (const SharpEdgeReport& sharp = found.sharp; sharp.curves > 0) {
             report.say(text("sharp edges   ", counted(sharp.curves - sharp.missed, "chain"), " of ", sharp.curves, " as ",
                             counted(sharp.creases, "crease"), ", ", sharp.rms, " RMS from them, at most ", sharp.max));
+        }
+        if (found.enclosed_world) {
+            report.say(text("volume        ", found.shape.volume_world, "; the surface encloses ", *found.enclosed_world));
         }
         report.say(text("folds         ", fold_text(found.shape.folds, made.mesh.cells.size())));
         if (error.missed_max > found.side_world) {

@@ -7,6 +7,7 @@
 //     │  rounds with straight cells: the boundary is drawn to the surface, more each time
 //     │  paths of edges for the sharp chains ──► creases, with a layer of cells along them ──► more of these rounds
 //     │  rounds with the limit of the scheme
+//     │  more of these, in which cells with flat corners and those whose limit folds count more
 //     └─ cubes are divided where the surface or a sharp chain is still too far away, as often as allowed
 //     folds are mended and the report is made
 //
@@ -27,6 +28,8 @@
 #include "sharp_paths.h"
 #include "subvol/cell.h"
 #include "subvol/detail/disjoint_sets.h"
+#include "subvol/detail/fold_verdicts.h"
+#include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/text_scanner.h"
@@ -218,6 +221,16 @@ void warn_of(const EnclosureReport& found, std::vector<std::string>& warnings) {
     }
 }
 
+void warn_of_volume(ControlMeshReport& report, OptionNames names) {
+    if (!report.enclosed_world) return;
+    const double part = report.shape.volume_world / *report.enclosed_world - 1;
+    constexpr double kMuch = 0.02;
+    if (std::abs(part) < kMuch) return;
+    report.shape.warnings.push_back("the limit encloses " + number_text(100 * std::abs(part), 2) + " % " +
+                                    (part < 0 ? "less" : "more") + " than the surface: more " + option_name("cells", names) +
+                                    " or " + option_name("refine", names) + " come nearer");
+}
+
 std::size_t parts_of(const HexMesh& mesh) {
     DisjointSets joined(mesh.points.size());
     for (const auto& cell : mesh.cells) {
@@ -249,7 +262,8 @@ public:
 
     void fill(const SizedMesh& inside) {
         LayeredMesh layered = with_layer_at_hull(inside.mesh);
-        sides_ = sides_of(layered, inside.sides);
+        aims_.sides = sides_of(layered, inside.sides);
+        aims_.weights.assign(aims_.sides.size(), 1);
         mesh_ = std::move(layered.mesh);
         start_ = mesh_.points;
         paths_ = {};
@@ -263,13 +277,16 @@ public:
             std::vector<std::array<Index, 2>> along = paths_.creases;
             along.insert(along.end(), paths_.cuts.begin(), paths_.cuts.end());
             layered = with_layer_along(mesh_, along);
-            sides_ = sides_of(layered, sides_);
+            aims_.sides = sides_of(layered, aims_.sides);
+            aims_.weights.assign(aims_.sides.size(), 1);
             mesh_ = std::move(layered.mesh);
             mesh_.creases = paths_.creases;
             start_ = mesh_.points;
             draw(Scheme::Linear, half / 2, half);
         }
         draw(options_.scheme.kind, half, options_.rounds);
+        straighten();
+        report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
     }
 
     /// Places of the boundary and the surface with a distance beyond `far`, and those of sharp edges that are missed.
@@ -296,11 +313,68 @@ private:
         for (int round = first; round < end; ++round) {
             const double part = static_cast<double>(round) / options_.rounds;
             report_progress(options_.progress, "shape", (report_.refined + part) / (options_.refine + 1));
-            constexpr double kMore = 1.5;
-            mesh_.points = fitter_->relaxed(mesh_.points, sides_, std::pow(kMore, round));
+            relax(round);
         }
-        report_.shape.rounds += end - first;
-        report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
+    }
+
+    void relax(int round) {
+        constexpr double kMore = 1.5;
+        mesh_.points = fitter_->relaxed(mesh_.points, aims_, std::pow(kMore, round));
+        ++report_.shape.rounds;
+    }
+
+    /// Cells with flat corners and those whose limit folds or may fold count more, and all points are drawn again, until there
+    /// are no such cells. Folds are looked for near those that are known, and everywhere if there are none left.
+    void straighten() {
+        constexpr int kTimes = 10, kRounds = 2, kNear = 2;
+        constexpr double kMore = 4;
+        std::vector<std::uint8_t> near(mesh_.cells.size(), 1);
+        for (int k = 0; k < kTimes; ++k) {
+            report_progress(options_.progress, "straighten", static_cast<double>(k) / kTimes);
+            std::vector<std::uint8_t> bad = bad_cells(near);
+            if (std::ranges::count(bad, 1) == 0 && std::ranges::count(near, 0) > 0) {
+                std::ranges::fill(near, 1);
+                bad = bad_cells(near);
+            }
+            if (std::ranges::count(bad, 1) == 0) break;
+            for (std::size_t c = 0; c < bad.size(); ++c) {
+                if (bad[c] != 0) aims_.weights[c] *= kMore;
+            }
+            for (int round = 0; round < kRounds; ++round) relax(options_.rounds - 1);
+            near = std::move(bad);
+            grow(mesh_, near, kNear);
+        }
+        report_progress(options_.progress, "straighten", 1);  // ends what was cancelled
+    }
+
+    /// Flags for the cells that have flat corners, and those of the near ones whose limit folds or may fold.
+    [[nodiscard]] std::vector<std::uint8_t> bad_cells(const std::vector<std::uint8_t>& near) const {
+        std::vector<std::uint8_t> sharp(mesh_.points.size(), 0);
+        for (const auto& crease : mesh_.creases) {
+            for (const Index p : crease) sharp[p] = 1;
+        }
+        std::vector<std::uint8_t> bad(mesh_.cells.size());
+        parallel_each(bad.size(), [&](std::size_t c) {
+            std::array<Vec3, 8> corners;
+            for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh_.points[mesh_.cells[c][k]];
+            // The angle of a sharp edge may be acute, and would be rounded.
+            constexpr double kFlat = 0.3, kFlatAtCrease = 0.05;
+            const bool at_crease = std::ranges::any_of(mesh_.cells[c], [&](Index p) { return sharp[p] != 0; });
+            bad[c] = min_scaled_jacobian(corners) < (at_crease ? kFlatAtCrease : kFlat) ? 1 : 0;
+        });
+        if (options_.folds.keep) return bad;
+        FoldOptions folds;
+        folds.scheme = options_.scheme;
+        folds.progress = options_.progress;
+        std::vector<Index> cells;
+        for (Index c = 0; c < near.size(); ++c) {
+            if (near[c] != 0) cells.push_back(c);
+        }
+        const std::vector<FoldVerdict> verdicts = fold_verdicts(mesh_, cells, folds);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            if (verdicts[k] == FoldVerdict::Folded || verdicts[k] == FoldVerdict::Open) bad[cells[k]] = 1;
+        }
+        return bad;
     }
 
     const Surface& surface_;
@@ -308,7 +382,7 @@ private:
     const ControlMeshOptions& options_;
     ControlMeshReport& report_;
     HexMesh mesh_;
-    std::vector<double> sides_;
+    CellAims aims_;
     std::vector<Vec3> start_;
     SharpPaths paths_;
     std::optional<ShapeFitter> fitter_;  // of the last rounds
@@ -344,6 +418,7 @@ Facts facts_of(const ControlMeshReport& report) {
     facts["refined"] = report.refined;
     facts["divided"] = report.divided;
     facts["side_world"] = report.side_world;
+    if (report.enclosed_world) facts["enclosed_world"] = *report.enclosed_world;
     Facts& sharp = facts.group("sharp");
     sharp["curves"] = report.sharp.curves;
     sharp["missed"] = report.sharp.missed;
@@ -431,6 +506,8 @@ ControlMesh control_mesh_of(const Surface& all, const ControlMeshOptions& given)
         report.shape.moved_world = std::max(report.shape.moved_world, glm::distance(filler.start()[p], mesh.points[p]));
     }
     report.min_scaled_jacobian = measure_cells(mesh).min_scaled_jacobian;
+    report.enclosed_world = bodies.volume();
+    warn_of_volume(report, options.names);
     return {std::move(mesh), std::move(report)};
 }
 

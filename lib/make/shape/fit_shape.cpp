@@ -90,6 +90,20 @@ Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
     return boundary.finish([&](Index p) { return fine.points[p]; });
 }
 
+ShapeError error_of(const Surface& boundary, const Surface& surface, const Progress* progress) {
+    if (is_cancelled(progress)) return {};
+    return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
+}
+
+double enclosed_volume(const Surface& closed) {
+    double volume = 0;
+    for (const auto& [a, b, c] : closed.triangles) {
+        const Vec3& x = closed.points[closed.triangles[0][0]];  // near, so that no digits are lost
+        volume += glm::dot(closed.points[a] - x, glm::cross(closed.points[b] - x, closed.points[c] - x)) / 6;
+    }
+    return volume;
+}
+
 }  // namespace
 
 namespace detail {
@@ -231,7 +245,9 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
         report.warnings.push_back(counted(report.inverted_cells.size(), "control cell is", "control cells are") +
                                   " turned inside out at a corner: " + first_of(report.inverted_cells));
     }
-    report.after = error_until(mesh, surface, options.scheme, options.progress);
+    const Surface boundary = fine_boundary(mesh, options.scheme);
+    report.after = error_of(boundary, surface, options.progress);
+    report.volume_world = enclosed_volume(boundary);
     const OpenEdges open = open_edges(surface);
     report.open_edges = open.count;
     report.open_length_world = open.length_world;
@@ -252,9 +268,7 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
 ShapeError error_until(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme, const Progress* progress) {
     validate(mesh);
     validate(surface);
-    const Surface boundary = fine_boundary(mesh, scheme);
-    if (is_cancelled(progress)) return {};
-    return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
+    return error_of(fine_boundary(mesh, scheme), surface, progress);
 }
 
 }  // namespace detail
@@ -314,6 +328,7 @@ Facts facts_of(const FitShapeReport& report) {
     put("after", report.after);
     facts["rounds"] = report.rounds;
     facts["moved_world"] = report.moved_world;
+    facts["volume_world"] = report.volume_world;
     facts["folds"] = facts_of(report.folds);
     facts["mended"] = report.mended;
     facts["folded_cells"] = report.folded_cells;

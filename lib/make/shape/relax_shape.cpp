@@ -28,11 +28,16 @@ Mat3 edges_at(const std::array<Index, 8>& cell, std::size_t corner, const Vec3* 
 /// What is minimised, as a function of the ways of the control points from their start, in sides.
 class ShapeEnergy : public ceres::FirstOrderFunction {
 public:
-    ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, const std::vector<double>& sides, double weight)
-        : fitter_(fitter), pulls_(fitter.pulls(control)), side_(std::ranges::max(sides)), weight_(weight), start_(control) {
-        const std::size_t children_of_cell = fitter_.children_.levels.empty() ? 1 : 8;
+    ShapeEnergy(const ShapeFitter& fitter, const std::vector<Vec3>& control, const CellAims& cells, double weight)
+        : fitter_(fitter),
+          pulls_(fitter.pulls(control)),
+          side_(std::ranges::max(cells.sides)),
+          weight_(weight),
+          cell_weights_(cells.weights),
+          start_(control) {
+        const std::vector<double>& sides = cells.sides;
         for (std::size_t c = 0; c < fitter_.children_.cells.size(); ++c) {
-            scales_.push_back(parts() * side_ / sides[c / children_of_cell]);
+            scales_.push_back(parts() * side_ / sides[c / children_of_cell()]);
         }
         const std::vector<Vec3> children = fine(control);
         for (std::size_t c = 0; c < scales_.size(); ++c) {
@@ -64,8 +69,9 @@ public:
                 const auto& cell = fitter_.children_.cells[c];
                 CornerCoordinates by_corners;
                 const CornerCoordinates corners = corners_of(cell, children, scales_[c]);
-                to.back() += part * distortion_of(corners, epsilon_, by_corners);
-                add_slopes(cell, scales_[c] * part, by_corners, to);
+                const double of_child = part * cell_weights_[c / children_of_cell()];
+                to.back() += of_child * distortion_of(corners, epsilon_, by_corners);
+                add_slopes(cell, scales_[c] * of_child, by_corners, to);
             });
         double shapes = slopes.back();
         slopes.pop_back();
@@ -75,8 +81,9 @@ public:
             parallel_sums(3 * count + 1, fitter_.cells_.size(), [&](std::size_t c, std::vector<double>& to) {
                 const auto& cell = fitter_.cells_[c];
                 CornerCoordinates by_corners;
-                to.back() += kFlat * flatness_of(corners_of(cell, points, 1), kLeast, by_corners);
-                add_slopes(cell, kFlat, by_corners, to);
+                const double of_cell = kFlat * cell_weights_[c];
+                to.back() += of_cell * flatness_of(corners_of(cell, points, 1), kLeast, by_corners);
+                add_slopes(cell, of_cell, by_corners, to);
             });
         shapes += of_cells.back();
         for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += of_cells[k];
@@ -127,8 +134,9 @@ private:
         }
     }
 
-    /// How many children a cell has along an edge.
+    /// How many children a cell has along an edge, and in all.
     [[nodiscard]] double parts() const { return fitter_.children_.levels.empty() ? 1 : 2; }
+    [[nodiscard]] std::size_t children_of_cell() const { return fitter_.children_.levels.empty() ? 1 : 8; }
 
     /// Distances count by the sides of the cells where they are.
     void weigh_by_size(const std::vector<double>& sides) {
@@ -154,7 +162,8 @@ private:
 
     const ShapeFitter& fitter_;
     std::vector<Pull> pulls_;
-    double side_, weight_;        // the greatest side; ways are in it
+    double side_, weight_;  // the greatest side; ways are in it
+    const std::vector<double>& cell_weights_;
     std::vector<double> scales_;  // from sides to those of each child
     std::vector<Vec3> start_;
     double least_ = 1, epsilon_ = 0;
@@ -177,10 +186,9 @@ private:
 
 }  // namespace
 
-std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
-                                       double weight) const {
+std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const CellAims& cells, double weight) const {
     std::vector<Vec3> ways(control.size(), Vec3(0.0));
-    const ceres::GradientProblem problem(new ShapeEnergy(*this, control, sides, weight));
+    const ceres::GradientProblem problem(new ShapeEnergy(*this, control, cells, weight));
     ceres::GradientProblemSolver::Options options;
     constexpr int kSteps = 30;
     options.max_num_iterations = kSteps;
@@ -191,7 +199,7 @@ std::vector<Vec3> ShapeFitter::relaxed(const std::vector<Vec3>& control, const s
     ceres::GradientProblemSolver::Summary summary;
     ceres::Solve(options, problem, &ways.front().x, &summary);
     std::vector<Vec3> points = control;
-    const double side = std::ranges::max(sides);
+    const double side = std::ranges::max(cells.sides);
     for (std::size_t p = 0; p < points.size(); ++p) points[p] += side * ways[p];
     return points;
 }

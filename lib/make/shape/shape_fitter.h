@@ -16,6 +16,12 @@ namespace subvol::detail {
 
 class ShapeEnergy;
 
+/// What the cells of a mesh should be like.
+struct CellAims {
+    std::vector<double> sides;    ///< of each cell, if it were not distorted at all
+    std::vector<double> weights;  ///< of the distortion of each cell: 1, or more where it has to be less
+};
+
 /// The boundary of a limit and a surface that it is fitted to.
 class ShapeFitter {
 public:
@@ -52,11 +58,11 @@ public:
     /// The distortion is that of the children of cells; of the linear scheme that of the cells. Flat corners of control cells
     /// are raised besides (flatness.h).
     ///
-    /// sides:  of each cell, if it were not distorted at all
     /// weight: of the squares of distances in sides, about each control point of the boundary, beside the distortion of a
-    /// corner source: [garanzha2021]
-    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const std::vector<double>& sides,
-                                            double weight) const;
+    ///         corner
+    ///
+    /// source: [garanzha2021]
+    [[nodiscard]] std::vector<Vec3> relaxed(const std::vector<Vec3>& control, const CellAims& cells, double weight) const;
 
 private:
     friend class ShapeEnergy;

@@ -363,6 +363,12 @@ double SurfaceBodies::least_volume() const {
     return volume;
 }
 
+std::optional<double> SurfaceBodies::volume() const {
+    const bool closed = std::ranges::all_of(walls_, [](const Wall& wall) { return wall.closed; });
+    if (!closed || report_.united > 0 || report_.one_sided > 0) return {};
+    return least_volume();
+}
+
 bool SurfaceBodies::is_sheet() const {
     return is_open() && glm::length(walls_.front().area) > kFlat * walls_.front().size;
 }

@@ -42,6 +42,8 @@ public:
 
     /// Less than what closed walls enclose: of united ones only the largest counts.
     [[nodiscard]] double least_volume() const;
+    /// What the walls enclose; nothing where it is not known, as some are open, cross each other or have only one side.
+    [[nodiscard]] std::optional<double> volume() const;
 
     /// Whether nothing is closed.
     [[nodiscard]] bool is_open() const { return walls_.size() == 1 && !walls_.front().closed; }

@@ -14,6 +14,7 @@
 #include "segment_rules.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
+#include "subvol/detail/fold_verdicts.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/regular_grid.h"
 #include "subvol/error.h"
@@ -669,6 +670,14 @@ Facts facts_of(const FoldReport& report) {
     sampled["folded"] = report.sampled.folded;
     sampled["least"] = report.sampled.least;
     return facts;
+}
+
+std::vector<FoldVerdict> detail::fold_verdicts(const HexMesh& mesh, std::span<const Index> cells, const FoldOptions& options) {
+    FoldChecker checker(mesh, options);
+    checker.check(cells, FoldEffort::Whole);
+    std::vector<FoldVerdict> verdicts;
+    for (const Index c : cells) verdicts.push_back(checker.verdict(c));
+    return verdicts;
 }
 
 FoldCheck check_folds(const HexMesh& mesh, const FoldOptions& options) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "subvol/fit_shape.h"
 
 namespace subvol {
@@ -9,7 +11,8 @@ struct ControlMeshOptions {
     SchemeOptions scheme{};             ///< as in `FitShapeOptions`, without an angle of creases
     int cells = 24;                     ///< cells along the longest side of the surface's box
     std::size_t max_cells = 2'000'000;  ///< the most cells that may be made
-    int rounds = 15;                    ///< searches for nearest places; distances count 1.5 times as much in each
+    /// Searches for nearest places; distances count 1.5 times as much in each. Up to 20 more where cells stay flat or fold
+    int rounds = 15;
     /// How often cubes may be divided into 27, where the boundary or a sharp edge is not met within `tolerance`
     int refine = 0;
     double tolerance = 0.25;      ///< a distance that is near enough, as a part of the side of a cube that is not divided
@@ -53,6 +56,8 @@ struct ControlMeshReport {
     int refined = 0;          ///< how often cubes were divided
     std::size_t divided = 0;  ///< how many cubes were divided in all
     double side_world = 0;    ///< side of a cube that is not divided
+    /// What the surface encloses, to compare with `shape.volume_world`; nothing where it has holes or parts cross
+    std::optional<double> enclosed_world{};
     /// Least of the control cells: 1 for cubes, negative if one is turned inside out at a corner
     double min_scaled_jacobian = 0;
 };

@@ -55,6 +55,7 @@ struct FitShapeReport {
     ShapeError before, after;      ///< error before and after the fit
     int rounds = 0;                ///< rounds that were made
     double moved_world = 0;        ///< the longest way of a control point
+    double volume_world = 0;       ///< what the boundary of the limit encloses, by its points of level 2
     FoldReport folds;              ///< folds of the limit in the end
     std::size_t mended = 0;        ///< cells that folded or were undecided though they are regular, before they were mended
     std::size_t open_edges = 0;    ///< edges of the surface of one triangle alone

@@ -174,6 +174,7 @@ TEST(ControlMesh, OfBoxesThatCrossIsTheirUnion) {
     for (const auto& t : one.triangles) boxes.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     const ControlMesh made = control_mesh_of(boxes, {.cells = 6});
     EXPECT_EQ(made.report.surface.united, 1U);
+    EXPECT_FALSE(made.report.enclosed_world.has_value());
     EXPECT_NEAR(limit_volume(made.mesh), 1.875,
                 0.06);  // the notch between the boxes has no creases, as they are not joined there
 }
@@ -188,19 +189,25 @@ TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
     EXPECT_LT(far.shape.after.missed_rms, 1.1 * near.shape.after.missed_rms);
 }
 
-TEST(ControlMesh, OfARingHasItsHole) {
+/// A torus about the z axis.
+Surface ring_of(double radius, double thickness) {
     Surface ring;
     constexpr int kAround = 48, kAcross = 20;
     for (int i = 0; i < kAround; ++i) {
         for (int j = 0; j < kAcross; ++j) {
             const double a = 2 * std::numbers::pi * i / kAround, b = 2 * std::numbers::pi * j / kAcross;
-            const double r = 2 + 0.7 * std::cos(b);
-            ring.points.emplace_back(r * std::cos(a), r * std::sin(a), 0.7 * std::sin(b));
+            const double r = radius + thickness * std::cos(b);
+            ring.points.emplace_back(r * std::cos(a), r * std::sin(a), thickness * std::sin(b));
             const auto at = [](int u, int v) { return static_cast<Index>(u % kAround * kAcross + v % kAcross); };
             ring.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
             ring.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
         }
     }
+    return ring;
+}
+
+TEST(ControlMesh, OfARingHasItsHole) {
+    const Surface ring = ring_of(2, 0.7);
     const ControlMesh made = control_mesh_of(ring, {.cells = 16});
     const Topology topology = build_topology(made.mesh);
     long points = 0, edges = 0, faces = 0;
@@ -210,6 +217,37 @@ TEST(ControlMesh, OfARingHasItsHole) {
     EXPECT_EQ(points - edges + faces, 0);  // the Euler number of a torus
     EXPECT_EQ(made.report.shape.folds.folded, 0U);
     EXPECT_LT(made.report.shape.after.rms, 0.03 * made.report.side_world);
+}
+
+// Its section is as wide as a cell and a half: drawn to the surface alone, cells fold and have a scaled Jacobian of .03.
+TEST(ControlMesh, OfAThinRingHasSoundCells) {
+    const ControlMesh made = control_mesh_of(ring_of(1, 0.1), {.cells = 12});
+    EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    EXPECT_EQ(made.report.shape.inverted_cells.size(), 0U);
+    EXPECT_GE(made.report.min_scaled_jacobian, 0.3);
+    EXPECT_GT(measure_cells(refine(made.mesh, {.levels = 3})).min_scaled_jacobian, 0);
+    EXPECT_LT(made.report.shape.after.rms, 0.25 * made.report.side_world);
+    // What that costs is said.
+    EXPECT_NEAR(made.report.enclosed_world.value(), 2 * std::numbers::pi * std::numbers::pi * 0.01, 0.004);
+    EXPECT_NEAR(made.report.shape.volume_world, limit_volume(made.mesh), 1e-3 * made.report.shape.volume_world);
+    EXPECT_GT(made.report.shape.volume_world, 1.1 * made.report.enclosed_world.value());
+    EXPECT_THAT(made.report.shape.warnings.at(0), HasSubstr("% more than the surface"));
+}
+
+// The cells at its edge of 25° are flat, as the edge is sharp.
+TEST(ControlMesh, KeepsAnAcuteEdge) {
+    const double height = 2 * std::tan(25 * std::numbers::pi / 180);
+    const Surface wedge{{{0, 0, 0}, {2, 0, 0}, {2, height, 0}, {0, 0, 1}, {2, 0, 1}, {2, height, 1}},
+                        {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
+    const ControlMesh made = control_mesh_of(wedge, {.cells = 12});
+    EXPECT_EQ(made.report.shape.folds.folded, 0U);
+    EXPECT_GT(made.report.min_scaled_jacobian, 0.05);
+    EXPECT_LT(made.report.sharp.max, 0.1 * made.report.side_world);
+    EXPECT_LT(made.report.shape.after.missed_max, 0.1 * made.report.side_world);
+    EXPECT_NEAR(made.report.enclosed_world.value(), height, 1e-12);
+    EXPECT_NEAR(made.report.shape.volume_world, limit_volume(made.mesh), 1e-3 * height);
+    EXPECT_NEAR(limit_volume(made.mesh), height, 1e-2 * height);
+    EXPECT_EQ(made.report.shape.warnings.size(), 0U);
 }
 
 /// A box turned in space, so that no cube has its directions.
@@ -340,7 +378,8 @@ TEST(ShapeFitter, TurnsACellBackThatWasTurnedInsideOut) {
     mesh.points[inner] += Vec3(1.6, 1.6, 1.6);
     ASSERT_LT(measure_cells(mesh).min_scaled_jacobian, 0);
     const detail::ShapeFitter fitter(build_topology(mesh), sides, {.kind = Scheme::Linear});
-    for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, std::vector<double>(mesh.cells.size(), 1), 10);
+    const std::vector<double> ones(mesh.cells.size(), 1);
+    for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, {ones, ones}, 10);
     EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.5);
 }
 
