@@ -8,10 +8,12 @@
 
 #include "bind.h"
 #include "given_grids.h"
+#include "grid_arrays.h"
 #include "subvol/detail/shared_grid.h"
 #include "subvol/nanovdb.h"
 #include "subvol/option.h"
 #include "subvol/rasterize.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
@@ -147,7 +149,17 @@ PYBIND11_MODULE(_grids, module) {
     using namespace subvol;
     using namespace subvol::python;
     py::module_::import("subvol._core");
-    py::class_<VdbGrid, Grid>(module, "Grid", "An OpenVDB grid: voxels with centres at world = h ijk.")
+    py::class_<VdbGrid, Grid>(module, "Grid",
+                              "An OpenVDB grid: sparse voxels with values at their centres. help(subvol.Grid) says more.")
+        .def(py::init(&grid_of_array), py::arg("array"), py::arg("voxel_size") = py::none(), py::arg("origin") = py::none(),
+             py::arg("name") = "density", py::kw_only(), py::arg("transform") = py::none(), py::arg("level_set") = false,
+             py::arg("background") = py::none())
+        .def("array", &array_of_grid)
+        .def_property_readonly("shape", &shape_of_grid)
+        .def_property_readonly("origin", &origin_of_grid)
+        .def_property_readonly("voxel_size", &voxel_size_of_grid)
+        .def_property_readonly("transform", &transform_of_grid)
+        .def_property_readonly("background", [](const VdbGrid& grid) { return grid.report().outside; })
         .def_property_readonly("name", [](const VdbGrid& grid) { return grid.report().name; })
         .def_property_readonly("report", [](const VdbGrid& grid) { return read_only(report_of(grid), "the report of a grid"); })
         .def_property_readonly("bounds",
@@ -183,6 +195,9 @@ PYBIND11_MODULE(_grids, module) {
     module.def("write", &write_grids, py::arg("path"), py::arg("grids"), py::arg("nano"));
     module.def(
         "read_vdb", [](const std::string& path) { return shared(read_vdb(path)); }, py::arg("path"),
+        py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "read_vdb_contents", [](const std::string& path) { return shared(read_vdb_contents(path).grids); }, py::arg("path"),
         py::call_guard<py::gil_scoped_release>());
     module.def(
         "write_points", [](const std::string& path, const RbfVolume& volume) { write_vdb_points(path, volume); },

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+import numpy.typing as npt
+
 from . import _core
 from ._arguments import Path, clamped, extension, needed, path_bytes, warn
 from ._colors import TransferFunction
@@ -17,7 +19,14 @@ if TYPE_CHECKING:
     from ._grids import Grid as Grid
 else:
     class _LazyGrid(type):
-        """`isinstance(x, Grid)` without loading OpenVDB: there is no grid before it is loaded."""
+        """The class Grid without OpenVDB, which is loaded when a grid is made: there is none before."""
+
+        def __call__(cls, array: npt.ArrayLike, voxel_size: Optional[npt.ArrayLike] = None, origin: Optional[npt.ArrayLike] = None,
+                     name: str = "density", *, transform: Optional[npt.ArrayLike] = None, level_set: bool = False,
+                     background: Optional[float] = None) -> Any:
+            from . import _grids
+
+            return _grids.Grid(array, voxel_size, origin, name, transform=transform, level_set=level_set, background=background)
 
         def __instancecheck__(cls, x: Any) -> bool:
             import sys
@@ -26,7 +35,24 @@ else:
             return grids is not None and isinstance(x, grids.Grid)
 
     class Grid(metaclass=_LazyGrid):
-        """An OpenVDB grid, as `read_vdb` and `rasterize` return it."""
+        """An OpenVDB grid, as `read_vdb` and `rasterize` return it: sparse voxels with values at their centres.
+
+        Grid(array, voxel_size, origin) makes one of an array (nx, ny, nz) of real numbers, or (nx, ny, nz, 3) of vectors, which it
+        copies as 32-bit floats: array[i, j, k] is the value at origin + voxel_size * (i, j, k), in the world. Voxels that are nan
+        are not active: there is no value there.
+
+        voxel_size: the edge of the voxels, or three for voxels that are no cubes
+        origin:     the centre of voxel 0, 0, 0; None: (0, 0, 0)
+        name:       of the grid in files
+        transform:  in place of voxel_size and origin, (4, 4): the world place of array[i, j, k] is transform @ (i, j, k, 1)
+        level_set:  the values are distances from a surface, below 0 inside
+        background: of a level set, its largest distance: voxels that are as far are not active; None: the largest of the array
+
+        `array()` returns a copy of the voxels in the box of the active ones, such an array of float32; a level set has no nan there.
+        Its `shape`, `origin`, `voxel_size` (of cubes along the axes), `transform` and `background` are those that make the grid again.
+        `values(at)` returns the values at places (n,3), trilinear, nan outside, and whether each is inside. `name`, `report`, `bounds`
+        (of the active voxels' centres) and `frame` say what the grid is; `difference(other)` compares the voxels of two grids.
+        """
 
 
 def _with_fields(mesh: HexMesh, fields: Optional[Sequence[str]]) -> HexMesh:
@@ -112,11 +138,24 @@ def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path,
     return made
 
 
-def read_vdb(path: Path) -> list[Grid]:
-    """The grids of floats of a `.vdb` file."""
+def read_vdb(path: Path, names: Union[None, str, Sequence[str]] = None) -> list[Grid]:
+    """The grids of a `.vdb` file.
+
+    names: of the grids to read, of floats, vectors, integers or masks; None: all grids of floats
+
+    Raises InvalidInput if a grid is not there, or no grid has floats; FileError if the file cannot be read.
+    """
     from . import _grids
 
-    return _grids.read_vdb(path_bytes(path))
+    if names is None:
+        return _grids.read_vdb(path_bytes(path))
+    contents = _grids.read_vdb_contents(path_bytes(path))
+    present = [grid.name for grid in contents]
+    chosen = [names] if isinstance(names, str) else list(names)
+    for name in chosen:
+        if name not in present:
+            raise InvalidInput(f"{path!s}: has no grid '{name}' (it has {', '.join(present) or 'none'})", str(path), ", ".join(present))
+    return [grid for name in chosen for grid in contents if grid.name == name]
 
 
 def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], path: Path, *, codes: Optional[Sequence[float]] = None,
