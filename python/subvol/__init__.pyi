@@ -336,15 +336,17 @@ def points_error(
     """
 
 def probe(
-    mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, clamp: Optional[str] = None,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, reach: float = 0.0,
-    progress: Progress = None
+    mesh: HexMesh, field: Optional[str] = None, at: Optional[npt.ArrayLike] = None, *, levels: Optional[int] = None,
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, reach: float = 0.0, progress: Progress = None
 ) -> ProbeSamples:
-    """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
+    """Fields of the limit, with their gradients, at places in the world: exact, not interpolated in cells.
 
     The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
     are those tetrahedra, and there are no parameters (nan).
 
+    field:       its name, or a quantity of fields, a vector's length; None: all fields as they are
+    at:          (n,3), world
     levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
@@ -353,6 +355,8 @@ def probe(
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
                  creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     reach:       places outside, at most this far from the boundary, get the values of its nearest point [0 or more]
+
+    probe(mesh, at) and the name `places` for `at` still work, and warn.
     """
 
 def rasterize(
@@ -611,12 +615,15 @@ def sample(
     """
 
 def slice(
-    mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *,
-    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[Union[float, str]] = None, resolution: int = 512, progress: Progress = None
+    mesh: HexMesh, field: Optional[str] = None, point: Optional[Sequence[float]] = None,
+    normal: Optional[Sequence[float]] = None, *, clamp: Optional[str] = None, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, resolution: int = 512,
+    progress: Progress = None
 ) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
+    point, normal: a place of the plane, and its direction, three numbers each
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
@@ -624,6 +631,8 @@ def slice(
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
                  creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     resolution:  places along the longer side [2 to 20000]
+
+    slice(mesh, point, normal, field) still works, and warns.
     """
 
 def streamlines(
@@ -672,7 +681,7 @@ def subdivide(
     """
 
 def surface(
-    mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *,
+    mesh: HexMesh, field: Optional[str] = None, iso: Union[float, Sequence[float], None] = None, *,
     boundary: Optional[bool] = None, path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None,
     clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, cap: bool = False, tolerance: float = 0.001, max_level: int = 6,
@@ -680,6 +689,7 @@ def surface(
 ) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
@@ -693,6 +703,8 @@ def surface(
     cap:         close each isosurface with the part of the boundary where the field is at least its value [with iso]
     tolerance:   how far triangles may lie from the limit, as a part of the longest side of the box [more than 0, at most 1]
     max_level:   refine no further [1 to 8]
+
+    surface(mesh, iso, field) still works, and warns.
     """
 
 def write_points(

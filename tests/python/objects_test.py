@@ -294,7 +294,7 @@ def test_text_of_objects_obeys_no_terminal(cube):
 def test_evaluate_is_what_probe_says(ball):
     low, high = ball.bounds
     places = low + (high - low) * np.random.default_rng(3).random((400, 3))
-    found, (values, inside) = subvol.probe(ball, places), subvol.evaluate(ball, "density", places)
+    found, (values, inside) = subvol.probe(ball, at=places), subvol.evaluate(ball, "density", places)
     assert np.array_equal(inside, found.inside) and 100 < inside.sum() < 400
     assert np.array_equal(values, found.fields["density"], equal_nan=True)
     cube = grid_of(2, field=lambda x: x @ [1, 2, -3])
@@ -306,7 +306,7 @@ def test_evaluate_refines_nothing(ball):
     """Two places cost what `probe` costs: the stages of the work are the same."""
     stages, probed = [], []
     subvol.evaluate(ball, "density", [[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: stages.append(stage))
-    subvol.probe(ball, [[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: probed.append(stage))
+    subvol.probe(ball, at=[[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: probed.append(stage))
     assert not any(stage.startswith("refine") for stage in stages) or set(stages) <= set(probed)
 
 
@@ -314,7 +314,7 @@ def test_a_field_is_the_limit(ball):
     """Values and gradients of the object are those of `probe`, many at once or one by one, as `compare` asks for them."""
     low, high = ball.bounds
     places = low + (high - low) * np.random.default_rng(5).random((500, 3))
-    found, field = subvol.probe(ball, places), subvol.as_field(ball, "density")
+    found, field = subvol.probe(ball, at=places), subvol.as_field(ball, "density")
     assert np.array_equal(field.values(places)[0], found.fields["density"], equal_nan=True)
     assert np.array_equal(field.gradients(places)[found.inside], found.gradients["density"][found.inside])
     assert np.isnan(field.gradients(places)[~found.inside]).all()
