@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import HexMesh, RbfVolume, Voxels
-from ._read_only import ReadOnlyDict
+from .reports import GridReport
 
 _Listener = Optional[Callable[[str, float], object]]
 
@@ -28,7 +28,7 @@ class Grid:
     @property
     def name(self) -> str: ...
     @property
-    def report(self) -> ReadOnlyDict[Any]: ...
+    def report(self) -> GridReport: ...
     @property
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
     @property

@@ -14,9 +14,10 @@ from . import _core
 from ._arguments import TET_SCHEMES, Path, clamped, in_order, needed, path_bytes, takes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
-from ._options import described
+from ._options import described, returns_by
 from ._points import _selected
 from ._progress import Progress, listening
+from .reports import ApproximateReport, ControlMeshReport, MendReport, ShapeReport, SurfaceReport
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ def probe(mesh: HexMesh, *given: Any, field: Optional[str] = None, at: Optional[
 
 
 @described
+@returns_by("patch", {"None": "VolumeMeasure", "str": "PatchMeasure", "Union[list[str], tuple[str, ...]]": "list[PatchMeasure]"})
 def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
             flux: Optional[str] = None, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
@@ -133,7 +135,7 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union
 
 @described
 def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
-                progress: Progress = None, **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+                progress: Progress = None, **options: Any) -> tuple[HexMesh, ApproximateReport]:
     """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
 
     onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`. The fields of a
@@ -154,7 +156,7 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
 
 @described
 def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, progress: Progress = None,
-                       **options: Any) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+                       **options: Any) -> Iterator[tuple[HexMesh, ApproximateReport]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
 
     onto: the control mesh of all steps; steps: meshes whose fields are the data, as of `open_series`, each taken when its turn
@@ -165,7 +167,7 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
     """
     approximator = _core.Approximator(onto, **options)
 
-    def fitted() -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+    def fitted() -> Iterator[tuple[HexMesh, ApproximateReport]]:
         for k, step in enumerate(steps):
             mesh = needed(step[1] if isinstance(step, tuple) and len(step) == 2 else step, HexMesh, f"steps[{k}]")
             with listening(progress) as listener:
@@ -183,7 +185,7 @@ def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
 
 @described
 def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
-              **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+              **options: Any) -> tuple[HexMesh, ShapeReport]:
     """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
@@ -201,7 +203,7 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
 
 @described
 def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
-                 **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+                 **options: Any) -> tuple[HexMesh, ControlMeshReport]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
@@ -262,7 +264,7 @@ def check_folds_between(before: HexMesh, after: HexMesh, *, progress: Progress =
 
 
 @described
-def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
+def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, FoldCheck, MendReport]:
     """Moves control points, as little as it can, until the limit is proved not to fold.
 
     Returns the mesh, what `check_folds` finds of it, and a report: folded and open cells before, moved points, farthest_edges and
@@ -336,7 +338,7 @@ class SurfaceMesh:
     normals: npt.NDArray[np.float64]
     fields: dict[str, npt.NDArray[np.float64]]
     gradients: dict[str, npt.NDArray[np.float64]]
-    report: dict[str, Any]
+    report: SurfaceReport
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from ._core import Camera, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
 from ._progress import Progress, listening
+from .reports import ReduceReport
 
 
 def _selected(mesh: HexMesh, field: Optional[str]) -> HexMesh:
@@ -72,7 +73,7 @@ def _sample_tets(mesh: HexMesh, footprint: Optional[Camera], levels: Optional[in
 
 @described
 def reduce(mesh: HexMesh, field: Optional[str] = None, rmse: float = 0.01, *, progress: Progress = None,
-           **options: Any) -> tuple[RbfVolume, dict[str, Any]]:
+           **options: Any) -> tuple[RbfVolume, ReduceReport]:
     """Approximates a field with as few kernels as a root mean square error of `rmse` needs.
 
     {keywords}

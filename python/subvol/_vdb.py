@@ -14,6 +14,7 @@ from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
 from ._progress import Progress, listening
+from .reports import GridReport
 
 if TYPE_CHECKING:
     from ._grids import Grid as Grid
@@ -112,7 +113,7 @@ def rasterize(what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]
 
 @described
 def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
-              nano: bool = False, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> list[dict[str, Any]]:
+              nano: bool = False, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> list[GridReport]:
     """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
@@ -132,7 +133,7 @@ def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path,
         grids = [what] if isinstance(what, Grid) else list(what)
         _grids.write(path_bytes(path), grids, nano)
         return [grid.report for grid in grids]
-    made: list[dict[str, Any]] = _make(what, path_bytes(path), fields, nano, progress, clamp, options)
+    made: list[GridReport] = _make(what, path_bytes(path), fields, nano, progress, clamp, options)
     if made[0]["active_voxels"] == 0:
         warn(f'the grid "{made[0]["name"]}" is empty: no voxel centre lies inside')
     return made
