@@ -728,8 +728,8 @@ def surface(
 def write_points(
     volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: str = 'z'
 ) -> None:
-    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail) or .vdb (Houdini). Numbers are exact: reading gives
-    the same bits, but of the positions in .vdb.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy). Numbers are exact:
+    reading gives the same bits, but of the positions in .vdb. docs/formats.md has the arrays of a .npz.
 
     ascii:       .ply: write text instead of binary numbers
     splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
