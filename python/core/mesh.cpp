@@ -302,7 +302,7 @@ py::object with_fields(const py::object& self, const py::object& fields) {
 }
 
 py::tuple selected(const HexMesh& mesh, const std::optional<std::string>& name) {
-    SelectedField field = select_field(mesh, name);
+    SelectedField field = result_of(py::none(), [&](Progress* listener) { return select_field(mesh, name, listener); });
     HexMesh with{mesh.points, mesh.cells, {std::move(field.scalar)}, mesh.creases, mesh.sharp_faces};
     return py::make_tuple(std::move(with), field.warning);
 }
@@ -564,10 +564,8 @@ void bind_mesh(py::module_& module) {
     module.def(
         "quantity",
         [](const HexMesh& mesh, const std::string& source) {
-            Attribute field = [&] {
-                const py::gil_scoped_release without_gil;
-                return field_of(mesh, source, source);
-            }();
+            Attribute field =
+                result_of(py::none(), [&](Progress* listener) { return field_of(mesh, source, source, listener); });
             const py::ssize_t points = length(mesh.points.size()), channels = field.channels;
             return channels == 1 ? owned(std::move(field.values), {points})
                                  : owned(std::move(field.values), {points, channels});

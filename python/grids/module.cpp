@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The extension subvol._grids: the calls that need OpenVDB, loaded when the first of them is made. It shares the classes of
 // subvol._core, which pybind11 knows by the names of their C++ types.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -51,12 +54,20 @@ py::tuple values_at(const VdbGrid& grid, const py::object& at) {
     const auto count = static_cast<std::size_t>(rows.shape(0));
     py::array_t<double> values(rows.shape(0));
     py::array_t<bool> inside(rows.shape(0));
-    for (std::size_t i = 0; i < count; ++i) {
-        const double* x = rows.data() + 3 * i;
-        const std::optional<double> value = grid.value({x[0], x[1], x[2]});
-        values.mutable_data()[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
-        inside.mutable_data()[i] = value.has_value();
-    }
+    double* const to_value = values.mutable_data();
+    bool* const to_inside = inside.mutable_data();
+    const double* const from = rows.data();
+    run(py::none(), [&](Progress* listener) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+            if (listener->cancelled()) return;  // `run` raises what cancelled it
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const double* x = from + 3 * i;
+                const std::optional<double> value = grid.value({x[0], x[1], x[2]});
+                to_value[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
+                to_inside[i] = value.has_value();
+            }
+        });
+    });
     return py::make_tuple(values, inside);
 }
 

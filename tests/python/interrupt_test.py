@@ -104,6 +104,34 @@ def test_ctrl_c_ends_the_work():
     assert out == "interrupted\n" and running.returncode == 7
 
 
+@pytest.mark.parametrize("call", ["subvol.quantity(mesh, 'grad(density)')", "subvol.quantity(mesh, 'curl(u)')", "subvol.streamlines(mesh, 'u', seed_count=2)",
+                                  "grid.values(places)"])
+def test_ctrl_c_ends_calls_without_progress(call):
+    """Interrupted early, a call takes a part of the time that it takes in all."""
+    program = textwrap.dedent(f"""
+        import os, signal, subvol, sys, threading, time, warnings
+        import numpy as np
+        warnings.simplefilter("ignore")
+        ball = subvol.model("ball", 24)
+        mesh = ball.with_fields({{**ball.fields, "u": ball.points}})
+        grid = subvol.rasterize(subvol.model("ball", 4), resolution=60)[0]
+        places = np.random.default_rng(0).uniform(-.5, .5, (4_000_000, 3))
+        begin = time.perf_counter()
+        {call}
+        whole = time.perf_counter() - begin
+        threading.Timer(whole / 10, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.perf_counter()
+        try:
+            {call}
+        except KeyboardInterrupt:
+            part = time.perf_counter() - begin
+            print(f"interrupted after {{part:.2f}} of {{whole:.2f}} s")
+            sys.exit(7 if part < .7 * whole else 8)
+        """)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=600)
+    assert done.returncode == 7, done.stdout + done.stderr
+
+
 def test_other_threads_run_while_one_refines():
     mesh = grid_of(24)
     ticks, stop = 0, threading.Event()
