@@ -17,6 +17,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
@@ -209,12 +213,12 @@ GridArray grid_box(const VdbGrid& grid) {
     const openvdb::Vec3d first = data.grid->indexToWorld(box.min());
     array.origin = {first[0], first[1], first[2]};
     std::size_t voxels = 1;
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
         const auto side = static_cast<std::size_t>(std::int64_t{box.max()[k]} - box.min()[k] + 1);
         if (side > kMostVoxels / voxels) {
             throw Error(ErrorCode::InvalidInput, "the box of its active voxels has more than 2^31 voxels", where);
         }
-        array.size[static_cast<std::size_t>(k)] = side;
+        array.size[k] = side;
         voxels *= side;
     }
     return array;
