@@ -90,7 +90,7 @@ def case(number):
     said = report["fields"]["f"]
     tiny = 1e-9 * max(np.abs(values).max(), 1e-300)
     diagonal = np.linalg.norm(mesh.points.max(0) - mesh.points.min(0))
-    there = subvol.probe(fitted, places, scheme=scheme, reach=.01 * diagonal)
+    there = subvol.probe(fitted, at=places, scheme=scheme, reach=.01 * diagonal)
     inside = there.inside
     off = np.abs(there.fields["f"][inside] - values[inside])
     row = dict(kind=kind, mesh=mesh_kind, field=name, scheme=scheme, undecided=report["undecided"], points=len(mesh.points))
@@ -100,7 +100,7 @@ def case(number):
     if is_mesh:
         cells = dice.integers(0, len(data.cells), 4000).astype(np.uint32)
         exact = subvol.evaluate_limit(data, cells, dice.random((4000, 3)), scheme="linear" if scheme == "linear" else "mcq")
-        found = subvol.probe(fitted, exact.positions, scheme=scheme)
+        found = subvol.probe(fitted, at=exact.positions, scheme=scheme)
         apart = np.abs(found.fields["f"] - exact.fields["f"])[found.inside]
         row["between"] = apart.max(initial=0) / (max(said["max"], said["max_between"]) + tiny)
     limit = subvol.evaluate_limit(fitted, dice.integers(0, len(mesh.cells), 8000).astype(np.uint32), dice.random((8000, 3)), scheme=scheme)

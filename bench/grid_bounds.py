@@ -48,7 +48,7 @@ def check(command, name, resolution, field, folder):
         mesh = subvol.HexMesh(mesh.points, mesh.cells, {grid: eval(field[1:], {"x": x, "y": y, "z": z, "sin": np.sin, "cos": np.cos})})
     elif mesh.fields[grid].ndim > 1:  # as `vdb` takes a vector
         mesh = subvol.HexMesh(mesh.points, mesh.cells, {grid: np.linalg.norm(mesh.fields[grid], axis=1)})
-    found = subvol.probe(mesh, world)
+    found = subvol.probe(mesh, at=world)
     inside = found.inside
     exact = subvol.evaluate_limit(mesh, found.cells[inside], found.parameters[inside], tolerance=1e-9, max_levels=16)
     slope = found.gradients[grid][inside]

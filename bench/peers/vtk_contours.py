@@ -68,7 +68,7 @@ def contour(mesh, field, iso):
 
 def describe(name, mesh, field, iso, points, triangles, seconds):
     middles = points[triangles].mean(axis=1)
-    found = subvol.probe(mesh, middles)
+    found = subvol.probe(mesh, at=middles)
     inside = found.inside
     slope = np.linalg.norm(found.gradients[field], axis=1)
     far = np.abs(found.fields[field] - iso)[inside] / np.maximum(slope[inside], 1e-300)
@@ -86,7 +86,7 @@ def main(names):
         values = mesh.fields[field]
         iso = values.min() + PART_OF_RANGE * np.ptp(values)
         begin = time.process_time()
-        ours = subvol.surface(mesh, iso, field)
+        ours = subvol.surface(mesh, field, iso)
         seconds = time.process_time() - begin
         describe(f"{name}: ours", mesh, field, iso, ours.points, ours.triangles, seconds)
         for level in range(MOST_LEVELS + 1):

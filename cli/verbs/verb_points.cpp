@@ -58,11 +58,15 @@ public:
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
+               "  subvol points part.vtu -o part.npz                   arrays for numpy\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         show_limit_of_parts();
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
-        app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb)")->type_name("FILE")->required();
+        app()
+            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb, .npz)")
+            ->type_name("FILE")
+            ->required();
         add_options(app(), options_of(written_));
         sample_.add_to(app());
         add_option(app(), Option("tf", transfer_function_)
@@ -93,7 +97,7 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
+        check_output(output_, {".ply", ".vtp", ".svk", ".vdb", ".npz"});
         const std::string extension = std::filesystem::path(output_).extension().string();
         if (extension != ".ply" && (written_.ascii || written_.splats)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", written_.ascii ? "--ascii" : "--splats");
@@ -116,6 +120,10 @@ public:
         if (share_.given() && extension == ".svk") {
             throw Error(ErrorCode::InvalidInput, "the levels of detail of a .svk file are those of all points", output_,
                         ".ply or .vtp; `subvol join` writes .svk");
+        }
+        if (share_.given() && extension == ".npz") {
+            throw Error(ErrorCode::InvalidInput, "a share of points is not written as .npz, which is not read again", output_,
+                        ".ply or .vtp; `subvol join` writes .npz");
         }
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
         if (shares(share_)) {

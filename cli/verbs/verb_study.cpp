@@ -140,7 +140,7 @@ public:
                "  subvol study --list\n"
                "  subvol study table2 figure7 -o out\n"
                "  subvol study mine.json -o out --jobs 4\n"
-               "  subvol study order spacing -o out --mesh part.vtu",
+               "  subvol study order spacing -o out --mesh part.vtu --field T",
                Reads::NoMesh) {
         add_input(app(), "NAME|FILE", names_, "studies: names from --list, or JSON files (docs/studies.md)")->type_name("");
         add_option(
@@ -149,8 +149,13 @@ public:
                 .also("o")
                 .help("DIR",
                       "the folder: report.html, and for each study a folder with results.csv, costs.csv, cases, pictures"));
-        add_option(app(), Option("mesh", meshes_)
-                              .help("FILE", "another mesh for the study, with the options of its first input (repeatable)"));
+        add_option(
+            app(),
+            Option("mesh", meshes_)
+                .help("FILE", "run the study on this mesh with its own field, in place of the study's inputs (repeatable)"));
+        add_option(app(), Option("field", field_)
+                              .help("EXPR", "the field of the meshes of --mesh, or a quantity (default: the first scalar)")
+                              .only_with("mesh"));
         add_option(app(), Option("jobs", jobs_)
                               .between(1, 1024)
                               .help("N", "cases that run at the same time, unless costs are measured (default: one per core)"));
@@ -226,17 +231,45 @@ private:
         return source;
     }
 
+    /// A built-in study of the user's meshes alone: with their fields, and refined as the study refines its first input.
     [[nodiscard]] Json with_meshes(const std::string& name, Json json) const {
+        if (meshes_.empty()) return json;
+        if (!json.contains("inputs")) throw Error(ErrorCode::InvalidInput, "the study '" + name + "' takes no mesh", "--mesh");
+        Json inputs = Json::array();
         for (const std::string& mesh : meshes_) {
-            if (!json.contains("inputs"))
-                throw Error(ErrorCode::InvalidInput, "the study '" + name + "' takes no mesh", "--mesh");
             Json input = json["inputs"].front();
-            for (const char* key : {"model", "resolution", "given"}) input.erase(key);
+            for (const char* key : {"model", "resolution", "given", "density"}) input.erase(key);
             input["file"] = fs::absolute(mesh).string();
             input["name"] = plain_name(fs::path(mesh).stem().string());
-            json["inputs"].push_back(std::move(input));
+            if (!field_.empty()) input["field"] = field_;
+            inputs.push_back(std::move(input));
         }
+        json["inputs"] = std::move(inputs);
+        json["about"] = json.value("about", std::string()) +
+                        " Here the inputs of the study are replaced by meshes of the user with their own fields.";
+        if (json.contains("tables")) leave_out_published(json["tables"]);
         return json;
+    }
+
+    /// Leaves out the columns with published numbers about a study's own inputs, and the tables of these alone.
+    static void leave_out_published(Json& tables) {
+        const auto published = [](const std::string& key) { return key.starts_with("given."); };
+        Json left = Json::array();
+        for (Json& table : tables) {
+            bool about_others = false;
+            const Json where = table.value("where", Json::object());
+            for (const auto& item : where.items()) about_others = about_others || published(item.key());
+            for (const char* list : {"rows", "columns", "average"}) {
+                if (!table.contains(list)) continue;
+                Json kept = Json::array();
+                for (const Json& key : table[list]) {
+                    if (!published(key.get<std::string>())) kept.push_back(key);
+                }
+                table[list] = std::move(kept);
+            }
+            if (!about_others) left.push_back(std::move(table));
+        }
+        tables = std::move(left);
     }
 
     static std::string plain_name(std::string name) {
@@ -361,11 +394,23 @@ private:
         report.say("\n" + text("The report is ", page.string()));
     }
 
+    /// A word as a shell reads it.
+    static std::string shell_word(const std::string& word) {
+        const auto plain = [](unsigned char c) {
+            return std::isalnum(c) != 0 || std::string_view("._-/+=:,@%").find(static_cast<char>(c)) != std::string_view::npos;
+        };
+        if (std::all_of(word.begin(), word.end(), plain)) return word;
+        std::string quoted = "'";
+        for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        return quoted + "'";
+    }
+
     /// The command that runs the same studies again.
     [[nodiscard]] std::string command(const std::vector<std::string>& names) const {
         std::string words = "subvol study";
         for (const std::string& name : names) words += " " + name;
-        for (const std::string& mesh : meshes_) words += " --mesh " + mesh;
+        for (const std::string& mesh : meshes_) words += " --mesh " + shell_word(mesh);
+        if (!field_.empty()) words += " --field " + shell_word(field_);
         return words + (exr_ ? " --exr -o " : " -o ") + output_;
     }
 
@@ -458,6 +503,7 @@ private:
     std::vector<std::string> names_;
     std::string output_;
     std::vector<std::string> meshes_;
+    std::string field_;
     std::optional<int> jobs_;
     bool resume_ = true;
     bool fresh_ = false;

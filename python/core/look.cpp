@@ -96,7 +96,11 @@ Picture picture_from(const py::object& given) {
 
 /// The colour behind the picture: the one given, else the one that it was drawn for, else black.
 Vec3 background_of(const Picture& picture, const py::object& given) {
-    if (!given.is_none()) return vector_of(given, "background");
+    if (!given.is_none()) {
+        const Vec3 color = vector_of(given, "background");
+        if (std::isfinite(color.x + color.y + color.z)) return color;
+        throw Error(ErrorCode::InvalidInput, "is not a colour", "background", "three finite numbers, linear RGB");
+    }
     return picture.report.contains("background") ? vector_of(picture.report["background"], "background") : Vec3(0.0);
 }
 
@@ -104,6 +108,14 @@ py::bytes png_of(const Picture& picture, const py::object& background) {
     const std::vector<std::uint8_t> rgb = srgb_bytes(picture.image, background_of(picture, background));
     const py::bytes bytes(reinterpret_cast<const char*>(rgb.data()), rgb.size());
     return py::module_::import("subvol._png").attr("encode")(bytes, picture.image.width, picture.image.height);
+}
+
+/// The bytes that `write` puts into a .png.
+py::array srgb_of(const Picture& picture, const py::object& background) {
+    const bool alpha = py::isinstance<py::str>(background) && background.cast<std::string>() == "none";
+    std::vector<std::uint8_t> bytes =
+        alpha ? srgba_bytes(picture.image) : srgb_bytes(picture.image, background_of(picture, background));
+    return owned(std::move(bytes), {picture.image.height, picture.image.width, alpha ? 4 : 3});
 }
 
 using Pair = std::pair<double, double>;
@@ -242,6 +254,13 @@ void bind_image(py::module_& module) {
         .def_property_readonly("data_window", [](const Picture& p) { return window_tuple(p.windows().data); })
         .def_property_readonly("display_window", [](const Picture& p) { return window_tuple(p.windows().display); })
         .def_property_readonly("report", [](const Picture& p) { return p.report; })
+        .def("to_srgb", &srgb_of, py::arg("background") = py::none(),
+             "The picture as 8-bit sRGB, (height, width, 3) uint8: what screens, matplotlib and other programs show, and what "
+             "`write`\n"
+             "puts into a .png.\n\n"
+             "background: linear RGB behind the picture; None: that which it was drawn for; \"none\": (height, width, 4), with "
+             "an\n"
+             "            alpha that the colours are not multiplied by\n")
         .def("png", &png_of, py::arg("background") = py::none())
         .def("_repr_png_", [](const Picture& p) { return png_of(p, py::none()); })
         .def("write", &write_picture, py::arg("path"), py::arg("background") = py::none())

@@ -402,8 +402,11 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 
 std::vector<Vec3> seeds_in(const HexMesh& mesh, const py::object& seeds, std::size_t count, const LimitOptions& limit) {
     if (seeds.is_none()) {
-        const py::gil_scoped_release without_gil;
-        return middles_of_cells(mesh, count, limit);
+        return result_of(py::none(), [&](Progress* listener) {
+            LimitOptions heard = limit;
+            heard.progress = listener;
+            return middles_of_cells(mesh, count, heard);
+        });
     }
     if (py::isinstance<py::str>(seeds)) return parse_seeds(seeds.cast<std::string>(), count);
     const bool is_list = py::isinstance<py::list>(seeds) || py::isinstance<py::tuple>(seeds);

@@ -302,7 +302,7 @@ py::object with_fields(const py::object& self, const py::object& fields) {
 }
 
 py::tuple selected(const HexMesh& mesh, const std::optional<std::string>& name) {
-    SelectedField field = select_field(mesh, name);
+    SelectedField field = result_of(py::none(), [&](Progress* listener) { return select_field(mesh, name, listener); });
     HexMesh with{mesh.points, mesh.cells, {std::move(field.scalar)}, mesh.creases, mesh.sharp_faces};
     return py::make_tuple(std::move(with), field.warning);
 }
@@ -426,24 +426,33 @@ py::object with_sets(HexMesh mesh, MeshSets sets) {
 }
 
 void bind_mesh(py::module_& module) {
+    // Assigning to a property says how to have another mesh.
+    const auto refuse = [](const char* sentence) {
+        return [sentence](HexMesh&, const py::object&) { throw py::attribute_error(sentence); };
+    };
+    const char* const no_points =
+        "the points and cells of a mesh cannot be changed; HexMesh(points, cells, mesh.fields) is a mesh with others";
     py::class_<MeshSets>(module, "MeshSets");
     py::class_<HexMesh>(module, "HexMesh", py::dynamic_attr(),
                         "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
         .def(py::init(&mesh_of), py::arg("points"), py::arg("cells"), py::arg("fields") = py::none(),
              py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none(), py::arg("crease_angle") = "auto")
-        .def_property_readonly(
+        .def_property(
             "points",
             [](const py::object& self) {
                 const auto& points = self.cast<const HexMesh&>().points;
                 return view(reinterpret_cast<const double*>(points.data()), {length(points.size()), 3}, self);
-            })
-        .def_property_readonly("cells",
-                               [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().cells, self); })
+            },
+            refuse(no_points))
+        .def_property(
+            "cells", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().cells, self); },
+            refuse(no_points))
         .def_property_readonly("creases",
                                [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().creases, self); })
         .def_property_readonly(
             "sharp_faces", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
-        .def_property_readonly("fields", &fields_of)
+        .def_property("fields", &fields_of,
+                      refuse("the fields of a mesh cannot be changed; mesh.with_fields({...}) is a mesh with others"))
         .def_property_readonly("cell_fields", &cell_fields_of)
         .def_property_readonly("patches", &patches_of)
         .def_property_readonly("sets", &cell_sets_of)
@@ -470,6 +479,8 @@ void bind_mesh(py::module_& module) {
         .def(
             "same_cells", [](const HexMesh& mesh, const HexMesh& other) { return same_cells(mesh, other); }, py::arg("other"))
         .def("__repr__", &mesh_text)
+        .def("_repr_html_",
+             [](const py::object& self) { return py::module_::import("subvol._notebook").attr("mesh_html")(self); })
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),
@@ -553,10 +564,8 @@ void bind_mesh(py::module_& module) {
     module.def(
         "quantity",
         [](const HexMesh& mesh, const std::string& source) {
-            Attribute field = [&] {
-                const py::gil_scoped_release without_gil;
-                return field_of(mesh, source, source);
-            }();
+            Attribute field =
+                result_of(py::none(), [&](Progress* listener) { return field_of(mesh, source, source, listener); });
             const py::ssize_t points = length(mesh.points.size()), channels = field.channels;
             return channels == 1 ? owned(std::move(field.values), {points})
                                  : owned(std::move(field.values), {points, channels});

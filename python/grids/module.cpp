@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The extension subvol._grids: the calls that need OpenVDB, loaded when the first of them is made. It shares the classes of
 // subvol._core, which pybind11 knows by the names of their C++ types.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -8,10 +11,12 @@
 
 #include "bind.h"
 #include "given_grids.h"
+#include "grid_arrays.h"
 #include "subvol/detail/shared_grid.h"
 #include "subvol/nanovdb.h"
 #include "subvol/option.h"
 #include "subvol/rasterize.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
@@ -49,12 +54,20 @@ py::tuple values_at(const VdbGrid& grid, const py::object& at) {
     const auto count = static_cast<std::size_t>(rows.shape(0));
     py::array_t<double> values(rows.shape(0));
     py::array_t<bool> inside(rows.shape(0));
-    for (std::size_t i = 0; i < count; ++i) {
-        const double* x = rows.data() + 3 * i;
-        const std::optional<double> value = grid.value({x[0], x[1], x[2]});
-        values.mutable_data()[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
-        inside.mutable_data()[i] = value.has_value();
-    }
+    double* const to_value = values.mutable_data();
+    bool* const to_inside = inside.mutable_data();
+    const double* const from = rows.data();
+    run(py::none(), [&](Progress* listener) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+            if (listener->cancelled()) return;  // `run` raises what cancelled it
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const double* x = from + 3 * i;
+                const std::optional<double> value = grid.value({x[0], x[1], x[2]});
+                to_value[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
+                to_inside[i] = value.has_value();
+            }
+        });
+    });
     return py::make_tuple(values, inside);
 }
 
@@ -147,7 +160,17 @@ PYBIND11_MODULE(_grids, module) {
     using namespace subvol;
     using namespace subvol::python;
     py::module_::import("subvol._core");
-    py::class_<VdbGrid, Grid>(module, "Grid", "An OpenVDB grid: voxels with centres at world = h ijk.")
+    py::class_<VdbGrid, Grid>(module, "Grid",
+                              "An OpenVDB grid: sparse voxels with values at their centres. help(subvol.Grid) says more.")
+        .def(py::init(&grid_of_array), py::arg("array"), py::arg("voxel_size") = py::none(), py::arg("origin") = py::none(),
+             py::arg("name") = "density", py::kw_only(), py::arg("transform") = py::none(), py::arg("level_set") = false,
+             py::arg("background") = py::none())
+        .def("array", &array_of_grid)
+        .def_property_readonly("shape", &shape_of_grid)
+        .def_property_readonly("origin", &origin_of_grid)
+        .def_property_readonly("voxel_size", &voxel_size_of_grid)
+        .def_property_readonly("transform", &transform_of_grid)
+        .def_property_readonly("background", [](const VdbGrid& grid) { return grid.report().outside; })
         .def_property_readonly("name", [](const VdbGrid& grid) { return grid.report().name; })
         .def_property_readonly("report", [](const VdbGrid& grid) { return read_only(report_of(grid), "the report of a grid"); })
         .def_property_readonly("bounds",
@@ -183,6 +206,9 @@ PYBIND11_MODULE(_grids, module) {
     module.def("write", &write_grids, py::arg("path"), py::arg("grids"), py::arg("nano"));
     module.def(
         "read_vdb", [](const std::string& path) { return shared(read_vdb(path)); }, py::arg("path"),
+        py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "read_vdb_contents", [](const std::string& path) { return shared(read_vdb_contents(path).grids); }, py::arg("path"),
         py::call_guard<py::gil_scoped_release>());
     module.def(
         "write_points", [](const std::string& path, const RbfVolume& volume) { write_vdb_points(path, volume); },

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Made by: python3 -c 'from subvol import _options; _options.print_stubs()'
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, overload
 
 import numpy.typing as npt
 
@@ -20,6 +20,7 @@ from ._vdb import Grid, read_vdb, sample_grid, write_usd
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
+from .reports import ApproximateReport, ControlMeshReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
 
 __version__: str
 
@@ -28,7 +29,7 @@ def approximate(
     scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, levels: int = 2,
     reach: float = 0.01, smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, refine: int = 0,
     tolerance: float = 0.001, progress: Progress = None
-) -> tuple[HexMesh, dict[str, Any]]:
+) -> tuple[HexMesh, ApproximateReport]:
     """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
 
     onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`. The fields of a
@@ -57,7 +58,7 @@ def approximate_series(
     onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, scheme: str = 'mcq',
     tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, levels: int = 2, reach: float = 0.01,
     smoothing: float = 0.0, iterations: int = 200, clamp: bool = False, progress: Progress = None
-) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+) -> Iterator[tuple[HexMesh, ApproximateReport]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
 
     onto: the control mesh of all steps; steps: meshes whose fields are the data, as of `open_series`, each taken when its turn
@@ -116,7 +117,7 @@ def control_mesh(
     crease_angle: Optional[Union[float, str]] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
     refine: int = 0, tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False,
     boundary_move: float = 0.2, progress: Progress = None
-) -> tuple[HexMesh, dict[str, Any]]:
+) -> tuple[HexMesh, ControlMeshReport]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
@@ -178,7 +179,7 @@ def fit_shape(
     mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, shape_rounds: int = 10, stiffness: float = 0.01,
     keep_folds: bool = False, boundary_move: float = 0.2, progress: Progress = None
-) -> tuple[HexMesh, dict[str, Any]]:
+) -> tuple[HexMesh, ShapeReport]:
     """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
@@ -222,12 +223,29 @@ def from_vtk(
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     """
 
+@overload
 def measure(
-    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
+    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: None = None, flux: Optional[str] = None,
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, tolerance: float = 0.0001, bins: int = 32,
+    progress: Progress = None
+) -> VolumeMeasure: ...
+
+@overload
+def measure(
+    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: str, flux: Optional[str] = None,
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, tolerance: float = 0.0001, bins: int = 32,
+    progress: Progress = None
+) -> PatchMeasure: ...
+
+@overload
+def measure(
+    mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[list[str], tuple[str, ...]],
     flux: Optional[str] = None, clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, tolerance: float = 0.0001, bins: int = 32,
     progress: Progress = None
-) -> Any:
+) -> list[PatchMeasure]:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
 
     Returns cells, volume, error (an estimate of how far off the volume is, as a part of it, and each mean, as a part of its field's
@@ -257,7 +275,7 @@ def mend_folds(
     mesh: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None,
     levels: int = 5, irregular_levels: int = 2, tests: int = 1000, boundary_move: float = 0.1, rounds: int = 10,
     progress: Progress = None
-) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
+) -> tuple[HexMesh, FoldCheck, MendReport]:
     """Moves control points, as little as it can, until the limit is proved not to fold.
 
     Returns the mesh, what `check_folds` finds of it, and a report: folded and open cells before, moved points, farthest_edges and
@@ -336,15 +354,17 @@ def points_error(
     """
 
 def probe(
-    mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, clamp: Optional[str] = None,
-    scheme: str = 'mcq', tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, reach: float = 0.0,
-    progress: Progress = None
+    mesh: HexMesh, field: Optional[str] = None, at: Optional[npt.ArrayLike] = None, *, levels: Optional[int] = None,
+    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, reach: float = 0.0, progress: Progress = None
 ) -> ProbeSamples:
-    """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
+    """Fields of the limit, with their gradients, at places in the world: exact, not interpolated in cells.
 
     The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
     are those tetrahedra, and there are no parameters (nan).
 
+    field:       its name, or a quantity of fields, a vector's length; None: all fields as they are
+    at:          (n,3), world
     levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear; of
@@ -353,6 +373,8 @@ def probe(
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
                  creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     reach:       places outside, at most this far from the boundary, get the values of its nearest point [0 or more]
+
+    probe(mesh, at) and the name `places` for `at` still work, and warn.
     """
 
 def rasterize(
@@ -425,7 +447,7 @@ def read_mesh(
 def reduce(
     mesh: HexMesh, field: Optional[str] = None, rmse: float = 0.01, *, kernel: Kernel = 'compact', overlap: float = 1.0,
     max_points: int = 1000000, move: bool = False, scheme: str = 'mcq', progress: Progress = None
-) -> tuple[RbfVolume, dict[str, Any]]:
+) -> tuple[RbfVolume, ReduceReport]:
     """Approximates a field with as few kernels as a root mean square error of `rmse` needs.
 
     rmse:        the root mean square error, in the field's unit [more than 0]
@@ -611,12 +633,15 @@ def sample(
     """
 
 def slice(
-    mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *,
-    clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[Union[float, str]] = None, resolution: int = 512, progress: Progress = None
+    mesh: HexMesh, field: Optional[str] = None, point: Optional[Sequence[float]] = None,
+    normal: Optional[Sequence[float]] = None, *, clamp: Optional[str] = None, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, resolution: int = 512,
+    progress: Progress = None
 ) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
+    point, normal: a place of the plane, and its direction, three numbers each
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
                  cc, bsxw, linear]
@@ -624,6 +649,8 @@ def slice(
     crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
                  creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     resolution:  places along the longer side [2 to 20000]
+
+    slice(mesh, point, normal, field) still works, and warns.
     """
 
 def streamlines(
@@ -672,7 +699,7 @@ def subdivide(
     """
 
 def surface(
-    mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *,
+    mesh: HexMesh, field: Optional[str] = None, iso: Union[float, Sequence[float], None] = None, *,
     boundary: Optional[bool] = None, path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None,
     clamp: Optional[str] = None, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, cap: bool = False, tolerance: float = 0.001, max_level: int = 6,
@@ -680,6 +707,7 @@ def surface(
 ) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
@@ -693,13 +721,15 @@ def surface(
     cap:         close each isosurface with the part of the boundary where the field is at least its value [with iso]
     tolerance:   how far triangles may lie from the limit, as a part of the longest side of the box [more than 0, at most 1]
     max_level:   refine no further [1 to 8]
+
+    surface(mesh, iso, field) still works, and warns.
     """
 
 def write_points(
     volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: str = 'z'
 ) -> None:
-    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail) or .vdb (Houdini). Numbers are exact: reading gives
-    the same bits, but of the positions in .vdb.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy). Numbers are exact:
+    reading gives the same bits, but of the positions in .vdb. docs/formats.md has the arrays of a .npz.
 
     ascii:       .ply: write text instead of binary numbers
     splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
@@ -709,7 +739,7 @@ def write_points(
 def write_series(
     series: Series | Sequence[HexMesh] | HexMesh, path: Path, *, times: Optional[Sequence[float]] = None,
     max_error: float = 0.001, max_point_error: Optional[float] = None, key_steps: int = 10, progress: Progress = None
-) -> dict[str, Any]:
+) -> SeriesReport:
     """Writes the steps of a series, or one mesh, in few bytes (`.svw`); `open_series` and `read_mesh` read them. Points and cells keep
     their order; what changes from step to step is stored.
 
@@ -731,7 +761,7 @@ def write_vdb(
     crease_angle: Optional[Union[float, str]] = None, voxel_size: Optional[float] = None, resolution: int = 200,
     half: bool = False, cell_ids: bool = False, mask: bool = False, coverage: bool = False,
     levels: Optional[int] = None, sdf: Optional[str] = None, half_width: float = 3.0, progress: Progress = None
-) -> list[dict[str, Any]]:
+) -> list[GridReport]:
     """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
@@ -758,7 +788,7 @@ def write_vdb(
 def write_wavelets(
     mesh: HexMesh, path: Path, tolerance: float = 0.001, *, scheme: str = 'mcq', tension: float = 0.0625,
     point_tolerance: Optional[float] = None, levels: int = 6, progress: Progress = None
-) -> dict[str, Any]:
+) -> WaveletReport:
     """Writes a mesh that is the refinement of a coarser one as control values and rounded details (`.svw`); `read_mesh` reads it.
 
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,

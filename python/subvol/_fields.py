@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import needed
+from ._arguments import field_name, needed
 from ._core import Field, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
@@ -49,6 +49,7 @@ def evaluate(what: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None
     Returns the values (n,) in the field's unit, nan outside the volume, and whether each place is inside (n,). To evaluate more than
     once, make a field by `as_field` first. `evaluate_limit` takes places in cells.
     """
+    field_name(field, "evaluate(what, field, at)")
     places = np.asarray(at)
     field_of = as_field(what, field, levels=levels, scheme=scheme, progress=progress)
     return field_of.values(np.empty((0, 3)) if places.size == 0 else places)

@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import TET_SCHEMES, Path, clamped, needed, path_bytes, warn
+from ._arguments import TET_SCHEMES, Path, clamped, in_order, needed, path_bytes, takes, warn
 from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
-from ._options import described
+from ._options import described, returns_by
 from ._points import _selected
 from ._progress import Progress, listening
+from .reports import ApproximateReport, ControlMeshReport, MendReport, ShapeReport, SurfaceReport
 
 
 @dataclass(frozen=True)
@@ -61,19 +62,30 @@ def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, 
 
 
 @described
-def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None, clamp: Optional[str] = None, progress: Progress = None,
-          **options: Any) -> ProbeSamples:
-    """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
+@takes("field", "at")
+def probe(mesh: HexMesh, *given: Any, field: Optional[str] = None, at: Optional[npt.ArrayLike] = None, levels: Optional[int] = None,
+          clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> ProbeSamples:
+    """Fields of the limit, with their gradients, at places in the world: exact, not interpolated in cells.
 
     The volume of the schemes "tetoct" and "boxspline" is linear between the vertices of a level of tetrahedra (docs/schemes.md); cells
     are those tetrahedra, and there are no parameters (nan).
 
+    field:       its name, or a quantity of fields, a vector's length; None: all fields as they are
+    at:          (n,3), world
     levels:      of "tetoct" and "boxspline", 0 to 8; None: 2
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
+
+    probe(mesh, at) and the name `places` for `at` still work, and warn.
     """
+    if "places" in options:
+        given = (*given, options.pop("places"))
+    field, at = in_order("probe", given, {"field": field, "at": at}, ("at",))
+    if at is None:
+        raise InvalidInput("at: is missing", "at", "places (n,3) in the world, as in probe(mesh, field, at)")
     mesh = clamped(mesh, clamp)
-    places = np.asarray(places)
+    mesh = mesh if field is None else _selected(mesh, field)
+    places = np.asarray(at)
     if levels is not None and options.get("scheme") not in TET_SCHEMES:
         raise InvalidInput("levels: the limit is probed, not a level", "levels", "None, or the scheme tetoct or boxspline")
     with listening(progress) as listener:
@@ -83,6 +95,7 @@ def probe(mesh: HexMesh, places: npt.ArrayLike, *, levels: Optional[int] = None,
 
 
 @described
+@returns_by("patch", {"None": "VolumeMeasure", "str": "PatchMeasure", "Union[list[str], tuple[str, ...]]": "list[PatchMeasure]"})
 def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union[str, Sequence[str], None] = None,
             flux: Optional[str] = None, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> Any:
     """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
@@ -122,7 +135,7 @@ def measure(mesh: HexMesh, *, only: Union[str, Sequence[str]] = (), patch: Union
 
 @described
 def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: Optional[Mapping[str, npt.ArrayLike]] = None, *,
-                progress: Progress = None, **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+                progress: Progress = None, **options: Any) -> tuple[HexMesh, ApproximateReport]:
     """Fits fields of a control mesh so that its limit is as near to samples as it can be, by least squares.
 
     onto: the control mesh; samples: a mesh whose points and fields are the data, or places (n,3) with values in `fields`. The fields of a
@@ -143,7 +156,7 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
 
 @described
 def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float, HexMesh]]], *, progress: Progress = None,
-                       **options: Any) -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+                       **options: Any) -> Iterator[tuple[HexMesh, ApproximateReport]]:
     """Fits the steps of a series one after the other, as `approximate` does: for each the control mesh with its fields, and the report.
 
     onto: the control mesh of all steps; steps: meshes whose fields are the data, as of `open_series`, each taken when its turn
@@ -154,7 +167,7 @@ def approximate_series(onto: HexMesh, steps: Iterable[Union[HexMesh, tuple[float
     """
     approximator = _core.Approximator(onto, **options)
 
-    def fitted() -> Iterator[tuple[HexMesh, dict[str, Any]]]:
+    def fitted() -> Iterator[tuple[HexMesh, ApproximateReport]]:
         for k, step in enumerate(steps):
             mesh = needed(step[1] if isinstance(step, tuple) and len(step) == 2 else step, HexMesh, f"steps[{k}]")
             with listening(progress) as listener:
@@ -172,7 +185,7 @@ def read_surface(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.in
 
 @described
 def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
-              **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+              **options: Any) -> tuple[HexMesh, ShapeReport]:
     """Moves control points so that the boundary of the limit lies on a surface of triangles, by least squares.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
@@ -190,7 +203,7 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
 
 @described
 def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
-                 **options: Any) -> tuple[HexMesh, dict[str, Any]]:
+                 **options: Any) -> tuple[HexMesh, ControlMeshReport]:
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
@@ -251,7 +264,7 @@ def check_folds_between(before: HexMesh, after: HexMesh, *, progress: Progress =
 
 
 @described
-def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, FoldCheck, dict[str, Any]]:
+def mend_folds(mesh: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, FoldCheck, MendReport]:
     """Moves control points, as little as it can, until the limit is proved not to fold.
 
     Returns the mesh, what `check_folds` finds of it, and a report: folded and open cells before, moved points, farthest_edges and
@@ -293,13 +306,21 @@ class Slice:
 
 
 @described
-def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, clamp: Optional[str] = None,
-          progress: Progress = None, **options: Any) -> Slice:
+@takes("field", "point", "normal")
+def slice(mesh: HexMesh, *given: Any, field: Optional[str] = None, point: Optional[Sequence[float]] = None,
+          normal: Optional[Sequence[float]] = None, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> Slice:
     """A field of the limit where a plane cuts it, seen from where the normal points.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
+    point, normal: a place of the plane, and its direction, three numbers each
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
+
+    slice(mesh, point, normal, field) still works, and warns.
     """
+    field, point, normal = in_order("slice", given, {"field": field, "point": point, "normal": normal}, ("point", "normal", "field"))
+    if point is None or normal is None:
+        raise InvalidInput("point, normal: a plane has both", "point", "three numbers each, as in slice(mesh, field, point, normal)")
     chosen = _selected(clamped(mesh, clamp), field)
     with listening(progress) as listener:
         found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], listener,
@@ -317,7 +338,7 @@ class SurfaceMesh:
     normals: npt.NDArray[np.float64]
     fields: dict[str, npt.NDArray[np.float64]]
     gradients: dict[str, npt.NDArray[np.float64]]
-    report: dict[str, Any]
+    report: SurfaceReport
 
 
 @dataclass(frozen=True)
@@ -358,17 +379,22 @@ def streamlines(mesh: HexMesh, vector: str, seeds: Union[None, str, Sequence[str
 
 
 @described
-def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
+@takes("field", "iso")
+def surface(mesh: HexMesh, *given: Any, field: Optional[str] = None, iso: Union[float, Sequence[float], None] = None, boundary: Optional[bool] = None,
             path: Optional[Path] = None, origin: Optional[npt.ArrayLike] = None, clamp: Optional[str] = None, progress: Progress = None,
             **options: Any) -> SurfaceMesh:
     """Isosurfaces of a field of the limit, and its boundary, as triangles.
 
+    field:       its name, or a quantity of fields; None: the most sensible scalar, said in a warning
     iso:         a value, or several; None: the boundary alone
     path:        also write it: .ply, .stl, .vtp, .obj, .glb, .vtkhdf
     origin:      the file's points are relative to this place (3,): .stl rounds to 32-bit floats; None: (0, 0, 0)
     clamp:       "file": the fields stay in the range that they have in the file, also between its points
     {keywords}
+
+    surface(mesh, iso, field) still works, and warns.
     """
+    field, iso = in_order("surface", given, {"field": field, "iso": iso}, ("iso", "field"))
     place = np.zeros(3) if origin is None else np.asarray(origin, dtype=float)
     if place.shape != (3,) or not np.isfinite(place).all():
         raise InvalidInput("origin: a place in the world is needed", "origin", "three finite numbers")

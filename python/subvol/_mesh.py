@@ -14,6 +14,7 @@ from ._core import HexMesh
 from ._errors import InvalidInput
 from ._options import described
 from ._progress import Progress, listening
+from .reports import SeriesReport, WaveletReport
 
 
 @described
@@ -48,7 +49,7 @@ def write_mesh(mesh: HexMesh, path: Path) -> None:
 
 @described
 def write_wavelets(mesh: HexMesh, path: Path, tolerance: float = 1e-3, *, progress: Progress = None,
-                   **options: Any) -> dict[str, Any]:
+                   **options: Any) -> WaveletReport:
     """Writes a mesh that is the refinement of a coarser one as control values and rounded details (`.svw`); `read_mesh` reads it.
 
     {keywords}
@@ -166,7 +167,7 @@ def open_series(path: Path | Sequence[Path], times: Optional[Sequence[float]] = 
 
 @described
 def write_series(series: Series | Sequence[HexMesh] | HexMesh, path: Path, *, times: Optional[Sequence[float]] = None,
-                 progress: Progress = None, **options: Any) -> dict[str, Any]:
+                 progress: Progress = None, **options: Any) -> SeriesReport:
     """Writes the steps of a series, or one mesh, in few bytes (`.svw`); `open_series` and `read_mesh` read them. Points and cells keep
     their order; what changes from step to step is stored.
 

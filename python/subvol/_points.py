@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import zipfile
+import zlib
 from typing import Any, Optional
+
+import numpy as np
 
 from . import _core
 from ._arguments import TET_SCHEMES, Path, clamped, extension, path_bytes, warn
 from ._core import Camera, HexMesh, RbfVolume
-from ._errors import InvalidInput
+from ._errors import FileError, InvalidInput
 from ._options import described
 from ._progress import Progress, listening
+from .reports import ReduceReport
 
 
 def _selected(mesh: HexMesh, field: Optional[str]) -> HexMesh:
@@ -72,7 +78,7 @@ def _sample_tets(mesh: HexMesh, footprint: Optional[Camera], levels: Optional[in
 
 @described
 def reduce(mesh: HexMesh, field: Optional[str] = None, rmse: float = 0.01, *, progress: Progress = None,
-           **options: Any) -> tuple[RbfVolume, dict[str, Any]]:
+           **options: Any) -> tuple[RbfVolume, ReduceReport]:
     """Approximates a field with as few kernels as a root mean square error of `rmse` needs.
 
     {keywords}
@@ -101,8 +107,28 @@ def kernels() -> dict[str, dict[str, Any]]:
     return {name: json.loads(_core.named_kernel(name)) for name in _core.kernel_names()}
 
 
+def _read_npz(path: Path) -> RbfVolume:
+    name = os.fsdecode(path)
+    arrays = "the arrays of `write_points`: centers, frames, channels, values, gradients, moments, kernel, boundary_points, boundary_triangles"
+    if not os.path.isfile(name):
+        raise FileError("cannot be read: there is no such file", name)
+    try:
+        with np.load(name, allow_pickle=False) as file:
+            channels = [label.decode("utf-8") for label in file["channels"].tolist()]
+            values, gradients, moments, hessians = (dict(zip(channels, file[key])) if key in file or key == "values" else {}
+                                                    for key in ("values", "gradients", "moments", "hessians"))
+            return RbfVolume(file["centers"], file["frames"], values, gradients, moments, hessians, kernel=file["kernel"].item().decode("utf-8"),
+                             boundary=(file["boundary_points"], file["boundary_triangles"]))
+    except (KeyError, AttributeError, TypeError, UnicodeDecodeError, zipfile.BadZipFile, zlib.error, EOFError) as error:
+        raise InvalidInput(f"{name}: is not a .npz of kernels: {error}", name, arrays) from None
+    except ValueError as error:
+        raise InvalidInput(f"{name}: {error}", name, arrays) from None
+
+
 def read_points(path: Path) -> RbfVolume:
-    """Reads the files of `write_points`: .ply, .vtp, .svk, .vdb."""
+    """Reads the files of `write_points`: .ply, .vtp, .svk, .vdb, .npz."""
+    if extension(path) == ".npz":
+        return _read_npz(path)
     if extension(path) == ".vdb":
         from . import _grids
 
@@ -112,12 +138,12 @@ def read_points(path: Path) -> RbfVolume:
 
 @described
 def write_points(volume: RbfVolume, path: Path, **options: Any) -> None:
-    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail) or .vdb (Houdini). Numbers are exact: reading gives
-    the same bits, but of the positions in .vdb.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy). Numbers are exact:
+    reading gives the same bits, but of the positions in .vdb. docs/formats.md has the arrays of a .npz.
 
     {keywords}
     """
-    if extension(path) in (".vdb", ".svk") and any(options.values()):
+    if extension(path) in (".vdb", ".svk", ".npz") and any(options.values()):
         raise InvalidInput("only .ply files have it", next(key for key, value in options.items() if value))
     if extension(path) == ".vdb":
         from . import _grids

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+import numpy.typing as npt
+
 from . import _core
 from ._arguments import Path, clamped, extension, needed, path_bytes, warn
 from ._colors import TransferFunction
@@ -12,12 +14,20 @@ from ._core import HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._options import described
 from ._progress import Progress, listening
+from .reports import GridReport
 
 if TYPE_CHECKING:
     from ._grids import Grid as Grid
 else:
     class _LazyGrid(type):
-        """`isinstance(x, Grid)` without loading OpenVDB: there is no grid before it is loaded."""
+        """The class Grid without OpenVDB, which is loaded when a grid is made: there is none before."""
+
+        def __call__(cls, array: npt.ArrayLike, voxel_size: Optional[npt.ArrayLike] = None, origin: Optional[npt.ArrayLike] = None,
+                     name: str = "density", *, transform: Optional[npt.ArrayLike] = None, level_set: bool = False,
+                     background: Optional[float] = None) -> Any:
+            from . import _grids
+
+            return _grids.Grid(array, voxel_size, origin, name, transform=transform, level_set=level_set, background=background)
 
         def __instancecheck__(cls, x: Any) -> bool:
             import sys
@@ -26,7 +36,24 @@ else:
             return grids is not None and isinstance(x, grids.Grid)
 
     class Grid(metaclass=_LazyGrid):
-        """An OpenVDB grid, as `read_vdb` and `rasterize` return it."""
+        """An OpenVDB grid, as `read_vdb` and `rasterize` return it: sparse voxels with values at their centres.
+
+        Grid(array, voxel_size, origin) makes one of an array (nx, ny, nz) of real numbers, or (nx, ny, nz, 3) of vectors, which it
+        copies as 32-bit floats: array[i, j, k] is the value at origin + voxel_size * (i, j, k), in the world. Voxels that are nan
+        are not active: there is no value there.
+
+        voxel_size: the edge of the voxels, or three for voxels that are no cubes
+        origin:     the centre of voxel 0, 0, 0; None: (0, 0, 0)
+        name:       of the grid in files
+        transform:  in place of voxel_size and origin, (4, 4): the world place of array[i, j, k] is transform @ (i, j, k, 1)
+        level_set:  the values are distances from a surface, below 0 inside
+        background: of a level set, its largest distance: voxels that are as far are not active; None: the largest of the array
+
+        `array()` returns a copy of the voxels in the box of the active ones, such an array of float32; a level set has no nan there.
+        Its `shape`, `origin`, `voxel_size` (of cubes along the axes), `transform` and `background` are those that make the grid again.
+        `values(at)` returns the values at places (n,3), trilinear, nan outside, and whether each is inside. `name`, `report`, `bounds`
+        (of the active voxels' centres) and `frame` say what the grid is; `difference(other)` compares the voxels of two grids.
+        """
 
 
 def _with_fields(mesh: HexMesh, fields: Optional[Sequence[str]]) -> HexMesh:
@@ -86,7 +113,7 @@ def rasterize(what: Union[HexMesh, RbfVolume], *, fields: Optional[Sequence[str]
 
 @described
 def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, fields: Optional[Sequence[str]] = None,
-              nano: bool = False, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> list[dict[str, Any]]:
+              nano: bool = False, clamp: Optional[str] = None, progress: Progress = None, **options: Any) -> list[GridReport]:
     """Writes the limit of a mesh, sums of kernels, or grids as `.vdb`: cubic voxels, values at their centres, active inside the volume.
 
     fields:      scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
@@ -106,17 +133,30 @@ def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path,
         grids = [what] if isinstance(what, Grid) else list(what)
         _grids.write(path_bytes(path), grids, nano)
         return [grid.report for grid in grids]
-    made: list[dict[str, Any]] = _make(what, path_bytes(path), fields, nano, progress, clamp, options)
+    made: list[GridReport] = _make(what, path_bytes(path), fields, nano, progress, clamp, options)
     if made[0]["active_voxels"] == 0:
         warn(f'the grid "{made[0]["name"]}" is empty: no voxel centre lies inside')
     return made
 
 
-def read_vdb(path: Path) -> list[Grid]:
-    """The grids of floats of a `.vdb` file."""
+def read_vdb(path: Path, names: Union[None, str, Sequence[str]] = None) -> list[Grid]:
+    """The grids of a `.vdb` file.
+
+    names: of the grids to read, of floats, vectors, integers or masks; None: all grids of floats
+
+    Raises InvalidInput if a grid is not there, or no grid has floats; FileError if the file cannot be read.
+    """
     from . import _grids
 
-    return _grids.read_vdb(path_bytes(path))
+    if names is None:
+        return _grids.read_vdb(path_bytes(path))
+    contents = _grids.read_vdb_contents(path_bytes(path))
+    present = [grid.name for grid in contents]
+    chosen = [names] if isinstance(names, str) else list(names)
+    for name in chosen:
+        if name not in present:
+            raise InvalidInput(f"{path!s}: has no grid '{name}' (it has {', '.join(present) or 'none'})", str(path), ", ".join(present))
+    return [grid for name in chosen for grid in contents if grid.name == name]
 
 
 def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], path: Path, *, codes: Optional[Sequence[float]] = None,

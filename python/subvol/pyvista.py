@@ -17,6 +17,7 @@ import numpy as np
 from . import from_vtk, render, surface, write_vdb
 from ._arguments import Path
 from ._core import HexMesh, Image
+from .reports import GridReport
 
 _pyvista: Any = importlib.import_module("pyvista")
 
@@ -47,7 +48,7 @@ class Subvol:
             polygons.point_data[name] = values
         return polygons
 
-    def to_vdb(self, path: Path, **options: Any) -> list[dict[str, Any]]:
+    def to_vdb(self, path: Path, **options: Any) -> list[GridReport]:
         """`subvol.write_vdb`."""
         return write_vdb(self.mesh, path, **options)
 

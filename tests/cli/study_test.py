@@ -120,6 +120,7 @@ class Study(StudyFolder):
             (["table2", "-o", "file"], "file"),
             (["order", "-o", "out", "--mesh", "no.vtk"], "no.vtk"),
             (["table1", "-o", "out", "--mesh", "no.vtk"], "takes no mesh"),
+            (["order", "-o", "out", "--field", "T"], "--field: has no effect without --mesh"),
             ([bad, "-o", "out"], "s.json: size: 1 is out of range"),
             (["no.json", "-o", "out"], "no.json"),
             (["table1", "table1", "-o", "out"], "two studies"),
@@ -128,6 +129,32 @@ class Study(StudyFolder):
             self.assertEqual(done.code, 2, arguments)
             self.assertIn(says, done.err)
             self.assertEqual(done.err.count("\n"), 1, done.err)
+
+    def rows_of(self, study, out):
+        return list(csv.DictReader((self.folder / out / study / "results.csv").read_text().splitlines()))
+
+    def test_a_study_of_my_mesh_is_of_my_field_alone(self):
+        self.run_ok("model", "ball", "--resolution", 2, "-o", "my ball.vtu")
+        self.run_ok("subdivide", "my ball.vtu", "-o", "fine.vtu", "--levels", 1)  # as the study does
+        lower, upper = json.loads(self.run_ok("info", "fine.vtu", "--json").out)["bounds"]
+        for out, field in ("one", "x*x"), ("seven", "7*x*x"):
+            self.run_ok("study", "fields", "-o", out, "--mesh", "my ball.vtu", "--field", field)
+        one, seven = self.rows_of("fields", "one"), self.rows_of("fields", "seven")
+        self.assertEqual({row["input"] for row in one + seven}, {"my_ball"})
+        self.assertEqual(len(one), len(seven))
+        for a, b in zip(one, seven):
+            self.assertAlmostEqual(float(b["l2"]), 7 * float(a["l2"]), delta=1e-3 * float(b["l2"]))  # kernels have 32-bit values
+        self.run_ok("study", "spacing", "-o", "out", "--mesh", "my ball.vtu", "--field", "7*x")
+        for row in self.rows_of("spacing", "out"):
+            self.assertEqual((row["input"], row["input.refine"], row.get("input.density", "")), ("my_ball", "1", ""))
+            self.assertAlmostEqual(float(row["max"]) / float(row["max_of_range"]), 7 * (upper[0] - lower[0]), delta=1e-6)
+        self.assertIn("replaced by meshes of the user", (self.folder / "out/report.html").read_text())
+        # Tables with published numbers about the study's own models.
+        self.run_ok("study", "ratios", "-o", "ratios", "--mesh", "my ball.vtu")
+        self.assertEqual({row["input"] for row in self.rows_of("ratios", "ratios")}, {"my_ball"})
+        report = (self.folder / "ratios/report.html").read_text()
+        self.assertNotIn("paper&#39;s kernels", report)
+        self.assertIn("subvol study ratios --mesh &#39;my ball.vtu&#39; -o ratios", report)
 
     def test_table_2_of_the_paper(self):
         # Four of the seven models: the others have three times as many points.

@@ -214,7 +214,7 @@ def test_exceptions_of_given_objects_pass_on(exception, cube, ball_points):
                  lambda guest: subvol.RbfVolume(guest, ball_points.frames, dict(ball_points.values)),
                  lambda guest: subvol.RbfVolume(ball_points.centers, ball_points.frames, {"x": guest}),
                  lambda guest: subvol.Image(guest), lambda guest: subvol.compare(fill, guest), lambda guest: subvol.write_image(guest, "no.png"),
-                 lambda guest: subvol.probe(cube, guest), lambda guest: subvol.as_field(cube, "x").values(guest), lambda guest: grid.values(guest),
+                 lambda guest: subvol.probe(cube, at=guest), lambda guest: subvol.as_field(cube, "x").values(guest), lambda guest: grid.values(guest),
                  lambda guest: subvol.evaluate_limit(cube, guest, [[.5, .5, .5]]), lambda guest: subvol.Camera(guest, [0, 0, 0]),
                  lambda guest: subvol.Refinement(cube, 1).apply(guest), lambda guest: subvol.render(cube, size=(8, 8), clip=guest)):
         with pytest.raises(exception, match="by the guest"):

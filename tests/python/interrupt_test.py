@@ -44,9 +44,9 @@ def calls(ball):
     return {"subdivide": lambda p: subvol.subdivide(ball, 2, progress=p), "Refinement": lambda p: subvol.Refinement(ball, 2, progress=p),
             "tets": lambda p: subvol.subdivide(ball, 1, "tetoct", progress=p), "evaluate": lambda p: subvol.evaluate(ball, "density", [[0, 0, 0]], progress=p),
             "as_field": lambda p: subvol.as_field(ball, "density", progress=p), "levels": lambda p: subvol.as_field(ball, "density", levels=2, progress=p),
-            "evaluate_limit": lambda p: subvol.evaluate_limit(ball, [0], [[.5, .5, .5]], progress=p), "probe": lambda p: subvol.probe(ball, [[0, 0, 0]], progress=p),
+            "evaluate_limit": lambda p: subvol.evaluate_limit(ball, [0], [[.5, .5, .5]], progress=p), "probe": lambda p: subvol.probe(ball, at=[[0, 0, 0]], progress=p),
             "measure": lambda p: subvol.measure(ball, progress=p), "part": lambda p: subvol.measure(ball, only="half:0,0,0,1,0,0", progress=p),
-            "slice": lambda p: subvol.slice(ball, (0, 0, 0), (0, 0, 1), progress=p), "surface": lambda p: subvol.surface(ball, .3, progress=p),
+            "slice": lambda p: subvol.slice(ball, point=(0, 0, 0), normal=(0, 0, 1), progress=p), "surface": lambda p: subvol.surface(ball, iso=.3, progress=p),
             "streamlines": lambda p: subvol.streamlines(flow, "U", progress=p), "check_folds": lambda p: subvol.check_folds(ball, progress=p),
             "mend_folds": lambda p: subvol.mend_folds(ball, progress=p), "approximate": lambda p: subvol.approximate(ball, fine, progress=p),
             "series": lambda p: list(subvol.approximate_series(ball, [fine], progress=p)),
@@ -102,6 +102,34 @@ def test_ctrl_c_ends_the_work():
     running.send_signal(signal.SIGINT)
     out, _ = running.communicate(timeout=300)
     assert out == "interrupted\n" and running.returncode == 7
+
+
+@pytest.mark.parametrize("call", ["subvol.quantity(mesh, 'grad(density)')", "subvol.quantity(mesh, 'curl(u)')", "subvol.streamlines(mesh, 'u', seed_count=2)",
+                                  "grid.values(places)"])
+def test_ctrl_c_ends_calls_without_progress(call):
+    """Interrupted early, a call takes a part of the time that it takes in all."""
+    program = textwrap.dedent(f"""
+        import os, signal, subvol, sys, threading, time, warnings
+        import numpy as np
+        warnings.simplefilter("ignore")
+        ball = subvol.model("ball", 24)
+        mesh = ball.with_fields({{**ball.fields, "u": ball.points}})
+        grid = subvol.rasterize(subvol.model("ball", 4), resolution=60)[0]
+        places = np.random.default_rng(0).uniform(-.5, .5, (4_000_000, 3))
+        begin = time.perf_counter()
+        {call}
+        whole = time.perf_counter() - begin
+        threading.Timer(whole / 10, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.perf_counter()
+        try:
+            {call}
+        except KeyboardInterrupt:
+            part = time.perf_counter() - begin
+            print(f"interrupted after {{part:.2f}} of {{whole:.2f}} s")
+            sys.exit(7 if part < .7 * whole else 8)
+        """)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=600)
+    assert done.returncode == 7, done.stdout + done.stderr
 
 
 def test_other_threads_run_while_one_refines():

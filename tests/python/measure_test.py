@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values at places, integrals, slices and surfaces of the limit."""
+import re
 import warnings
 
 import numpy as np
@@ -17,19 +18,19 @@ def test_values_at_places_are_those_of_the_limit(ball):
     rng = np.random.default_rng(5)
     cells = rng.integers(0, len(ball.cells), 200)
     at = subvol.evaluate_limit(ball, cells, rng.random((200, 3)))
-    found = subvol.probe(ball, at.positions)
+    found = subvol.probe(ball, at=at.positions)
     assert found.inside.all()
     np.testing.assert_allclose(found.fields["density"], at.fields["density"], atol=3e-5)  # the limit's tolerance, twice
     assert found.gradients["density"].shape == (200, 3)
 
 
 def test_outside_there_is_nothing(ball):
-    found = subvol.probe(ball, [[0, 0, 0], [1.05, 0, 0], [9, 9, 9]])
+    found = subvol.probe(ball, at=[[0, 0, 0], [1.05, 0, 0], [9, 9, 9]])
     assert found.inside.tolist() == [True, False, False]
     assert np.isnan(found.fields["density"][1:]).all() and found.cells[2] == -1
-    near = subvol.probe(ball, [[1.05, 0, 0], [9, 9, 9]], reach=.1)
+    near = subvol.probe(ball, at=[[1.05, 0, 0], [9, 9, 9]], reach=.1)
     assert near.inside.tolist() == [True, False]
-    assert len(subvol.probe(ball, []).cells) == 0
+    assert len(subvol.probe(ball, at=[]).cells) == 0
 
 
 def test_errors_of_kernels_fall_with_their_number(ball: subvol.HexMesh) -> None:
@@ -49,17 +50,17 @@ def test_integrals_of_the_ball(ball):
     field = found["fields"]["density"]
     assert field["min"] < field["mean"] < field["max"]
     assert field["histogram"].sum() == pytest.approx(found["volume"])
-    at = subvol.probe(ball, [field["max_at"]])
+    at = subvol.probe(ball, at=[field["max_at"]])
     assert at.fields["density"][0] == pytest.approx(field["max"], abs=1e-4)
 
 
 def test_a_slice_is_an_array_with_places(ball):
-    cut = subvol.slice(ball, (0, 0, .3), (0, 0, 1), resolution=40)
+    cut = subvol.slice(ball, point=(0, 0, .3), normal=(0, 0, 1), resolution=40)
     assert max(cut.values.shape) == 40 and cut.values.shape == cut.cells.shape
     row, column = np.argwhere(cut.cells >= 0)[10]
     place = cut.origin + column * cut.right + row * cut.down
     assert place[2] == pytest.approx(.3)
-    assert subvol.probe(ball, [place]).fields["density"][0] == pytest.approx(cut.values[row, column], abs=1e-5)
+    assert subvol.probe(ball, at=[place]).fields["density"][0] == pytest.approx(cut.values[row, column], abs=1e-5)
     assert (np.isnan(cut.values) == (cut.cells < 0)).all()
 
 
@@ -68,15 +69,15 @@ def test_surfaces_are_closed_and_point_outwards(ball, tmp_path):
     assert skin.report["watertight"] and skin.report["euler"] == 2
     assert (tmp_path / "skin.ply").exists()
     assert (np.einsum("ij,ij->i", skin.normals, skin.points) > .9).all()
-    iso = subvol.surface(ball, [0, .3], cap=True)
+    iso = subvol.surface(ball, iso=[0, .3], cap=True)
     assert iso.report["watertight"] and iso.triangles.max() < len(iso.points)
     assert iso.fields["density"].shape == (len(iso.points),)
 
 
 def test_what_makes_no_sense_is_refused(ball):
-    for call in (lambda: subvol.probe(ball, [[0, 0]]), lambda: subvol.probe(ball, [[0, 0, np.nan]]), lambda: subvol.slice(ball, (0, 0, 9), (0, 0, 1)),
+    for call in (lambda: subvol.probe(ball, at=[[0, 0]]), lambda: subvol.probe(ball, at=[[0, 0, np.nan]]), lambda: subvol.slice(ball, point=(0, 0, 9), normal=(0, 0, 1)),
                  lambda: subvol.surface(ball, tolerance=0), lambda: subvol.surface(ball, cap=True), lambda: subvol.measure(ball, bins=0),
-                 lambda: subvol.surface(ball, np.nan), lambda: subvol.surface(ball, 0, path="a.xyz")):
+                 lambda: subvol.surface(ball, iso=np.nan), lambda: subvol.surface(ball, iso=0, path="a.xyz")):
         with pytest.raises(subvol.InvalidInput):
             call()
 
@@ -115,16 +116,16 @@ def test_tetrahedra_are_refined_as_such(tetrahedra, scheme):
     assert np.ptp(fine.points, axis=0) == pytest.approx([2, 2, 2])  # right angles stay
     np.testing.assert_allclose(fine.fields["x"], fine.points[:, 0], atol=1e-12)
     at = fine.points[fine.cells[::97, 0]]  # corners of the tetrahedra
-    found = subvol.probe(mesh, at, scheme=scheme)
+    found = subvol.probe(mesh, at=at, scheme=scheme)
     np.testing.assert_allclose(found.fields["density"], fine.fields["density"][fine.cells[::97, 0]], atol=1e-6)
     np.testing.assert_allclose(found.gradients["x"], np.tile([1, 0, 0], (len(at), 1)), atol=1e-6)
     assert found.cells.max() < 48 and np.isnan(found.parameters).all()
-    same = subvol.probe(fine, at, scheme="linear")
+    same = subvol.probe(fine, at=at, scheme="linear")
     np.testing.assert_allclose(found.fields["density"], same.fields["density"], atol=1e-9)
     points = subvol.sample(mesh, "density", scheme=scheme)
     assert len(points) == 5 ** 3
-    for call in (lambda: subvol.sample(mesh, "x", 2, scheme=scheme), lambda: subvol.probe(mesh, at, levels=1),
-                 lambda: subvol.measure(mesh, scheme=scheme), lambda: subvol.probe(mesh, at, scheme=scheme, levels=9)):
+    for call in (lambda: subvol.sample(mesh, "x", 2, scheme=scheme), lambda: subvol.probe(mesh, at=at, levels=1),
+                 lambda: subvol.measure(mesh, scheme=scheme), lambda: subvol.probe(mesh, at=at, scheme=scheme, levels=9)):
         with pytest.raises(subvol.InvalidInput):
             call()
 
@@ -138,7 +139,7 @@ def test_tetrahedra_are_those_of_the_command(tetrahedra, command, tmp_path):
     subvol.write_points(subvol.sample(mesh, "density", scheme="tetoct"), tmp_path / "b.ply")
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
     theirs = json.loads(command("probe", file, "--at", ".3,.4,1.2", *asked, "--levels", 3, "--json"))["values"][0]
-    ours = subvol.probe(mesh, [[.3, .4, 1.2]], scheme="tetoct", levels=3)
+    ours = subvol.probe(mesh, at=[[.3, .4, 1.2]], scheme="tetoct", levels=3)
     assert (theirs["value"], theirs["cell"]) == (ours.fields["density"][0], ours.cells[0])
     assert theirs["gradient"] == ours.gradients["density"][0].tolist()
 
@@ -267,13 +268,13 @@ def beam():
 
 
 def test_slices_have_their_extremes_and_those_of_the_cells():
-    cut = subvol.slice(beam(), (0, 0, .4), (0, 0, 1), resolution=16)
+    cut = subvol.slice(beam(), point=(0, 0, .4), normal=(0, 0, 1), resolution=16)
     # The field depends on x alone: its extremes are those along a fine line.
     line = np.stack([np.linspace(0, 4, 20001), np.full(20001, .4), np.full(20001, .4)], 1)
-    values = subvol.probe(beam(), line).fields["T"]
+    values = subvol.probe(beam(), at=line).fields["T"]
     assert cut.min == pytest.approx(values.min(), abs=1e-5) and cut.max == pytest.approx(values.max(), abs=1e-5)
     assert (cut.file_min, cut.file_max) == pytest.approx((0, 10), abs=1e-12) and cut.max > 11
-    assert subvol.probe(beam(), [cut.max_at]).fields["T"][0] == pytest.approx(cut.max, abs=1e-9)
+    assert subvol.probe(beam(), at=[cut.max_at]).fields["T"][0] == pytest.approx(cut.max, abs=1e-9)
     assert cut.max_at[2] == pytest.approx(.4) and cut.file_max_at[0] == pytest.approx(2.5, abs=.501)
 
 
@@ -291,12 +292,12 @@ def test_a_warning_says_where_the_limit_is_another_body_or_leaves_the_range():
 
 def test_clamp_keeps_fields_in_the_range_of_the_file():
     mesh, line = beam(), np.stack([np.linspace(0, 4, 401), np.full(401, .4), np.full(401, .3)], 1)
-    free, kept = subvol.probe(mesh, line).fields["T"], subvol.probe(mesh, line, clamp="file").fields["T"]
+    free, kept = subvol.probe(mesh, at=line).fields["T"], subvol.probe(mesh, at=line, clamp="file").fields["T"]
     assert free.min() < -1 and free.max() > 11
     assert np.array_equal(kept, np.clip(free, 0, 10))
     whole = subvol.measure(mesh, clamp="file")["fields"]["T"]
     assert (whole["min"], whole["max"]) == (0, 10)
-    cut = subvol.slice(mesh, (0, 0, .4), (0, 0, 1), resolution=16, clamp="file")
+    cut = subvol.slice(mesh, point=(0, 0, .4), normal=(0, 0, 1), resolution=16, clamp="file")
     assert (cut.min, cut.max) == (0, 10)
     values = subvol.sample(mesh, "T", 2, clamp="file").values["T"]
     assert values.min() == 0 and values.max() == 10 and subvol.sample(mesh, "T", 2).values["T"].max() > 11
@@ -304,10 +305,10 @@ def test_clamp_keeps_fields_in_the_range_of_the_file():
     assert (report["min"], report["max"]) == (0, 10)
     faces = subvol.surface(mesh, boundary=True, field="T", clamp="file").fields["T"]
     assert faces.min() == 0 and faces.max() == 10
-    square = subvol.slice(mesh, (0, 0, .4), (0, 0, 1), "T*T", resolution=16, clamp="file")
+    square = subvol.slice(mesh, point=(0, 0, .4), normal=(0, 0, 1), field="T*T", resolution=16, clamp="file")
     assert (square.min, square.max) == (0, 100)
     with pytest.raises(subvol.InvalidInput, match="clamp: 'points' is unknown"):
-        subvol.probe(mesh, line, clamp="points")
+        subvol.probe(mesh, at=line, clamp="points")
 
 
 def test_parts_lie_in_the_whole_and_may_overlap(tmp_path):
@@ -324,3 +325,52 @@ def test_parts_lie_in_the_whole_and_may_overlap(tmp_path):
     assert {name: part["volume"] for name, part in parts.items()} == pytest.approx({"ALL": 3, "LEFT": 2, "RIGHT": 2})
     with pytest.raises(subvol.InvalidInput, match="their own sets"):
         subvol.read_mesh(tmp_path / "bar.inp", mesh=str(tmp_path / "bar.inp"))
+
+
+def test_all_calls_take_the_field_first_and_the_old_order_warns(ball):
+    mesh = subvol.HexMesh(ball.points, ball.cells, {"density": ball.fields["density"], "z": ball.points[:, 2]})
+    places = [[.1, .2, .3], [0, 0, -.4], [9, 9, 9]]
+    heights = np.array(places)[:2, 2]
+    values, inside = subvol.evaluate(mesh, "z", places)
+    assert values[:2] == pytest.approx(heights, abs=1e-6) and inside.tolist() == [True, True, False]
+    found = subvol.probe(mesh, "z", places)
+    assert list(found.fields) == ["z"] and found.fields["z"][:2] == pytest.approx(heights, abs=1e-6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plane = subvol.slice(mesh, "z", (0, 0, .25), (0, 0, 1), resolution=8)
+        level = subvol.surface(mesh, "z", .25)
+        both = subvol.surface(mesh, "z", [.1, .2])
+        everywhere = subvol.probe(mesh, at=places)
+    assert np.nanmin(plane.values) == pytest.approx(.25, abs=1e-6) and plane.field == "z"
+    assert level.points[:, 2] == pytest.approx(.25, abs=1e-6)
+    assert np.unique(both.points[:, 2].round(5)).tolist() == [.1, .2]
+    assert set(everywhere.fields) == {"density", "z"}
+
+    old = {"surface(mesh, field, iso)": (lambda: subvol.surface(mesh, .25, "z"), lambda: subvol.surface(mesh, .25, field="z")),
+           "slice(mesh, field, point, normal)": (lambda: subvol.slice(mesh, (0, 0, .25), (0, 0, 1), "z", resolution=8),
+                                                 lambda: subvol.slice(mesh, (0, 0, .25), (0, 0, 1), field="z", resolution=8)),
+           "probe(mesh, field, at)": (lambda: subvol.probe(mesh, places), lambda: subvol.probe(mesh, places=places))}
+    for written, calls in old.items():
+        for call in calls:
+            with pytest.warns(DeprecationWarning, match=f"write {re.escape(written)}") as said:
+                made = call()
+            assert said[0].filename == __file__
+            if written.startswith("surface"):
+                assert np.array_equal(made.points, level.points)
+            elif written.startswith("slice"):
+                assert np.array_equal(made.values, plane.values, equal_nan=True)
+            else:
+                assert all(np.array_equal(made.fields[name], everywhere.fields[name], equal_nan=True) for name in made.fields)
+    with pytest.warns(DeprecationWarning):
+        assert len(subvol.surface(mesh, None, "z").points) == len(subvol.surface(mesh, "z").points)
+
+    for wrong, message in ((lambda: subvol.evaluate(mesh, places), r"field: a name is needed, not list; write evaluate\(what, field, at\)"),
+                           (lambda: subvol.surface(mesh, .25, .5), r"field: a name is needed, not float; write surface\(mesh, field, iso\)"),
+                           (lambda: subvol.surface(mesh, "z", .5, iso=3), r"surface: iso is given twice"),
+                           (lambda: subvol.surface(mesh, "z", .5, 3), r"takes 3 arguments by position, not 4"),
+                           (lambda: subvol.slice(mesh, "z"), r"a plane has both .*slice\(mesh, field, point, normal\)"),
+                           (lambda: subvol.probe(mesh, "z"), r"at: is missing .*probe\(mesh, field, at\)")):
+        with pytest.raises((TypeError, subvol.InvalidInput), match=message):
+            wrong()
+    with pytest.raises(TypeError, match=r"takes 3 arguments"):
+        subvol.probe(mesh, "z", places, places=places)

@@ -11,7 +11,7 @@ import subvol
 CALLS = {
     "evaluate_limit": lambda mesh, points, folder, **more: subvol.evaluate_limit(mesh, [0], [[.5, .5, .5]], **more),
     "points_error": lambda mesh, points, folder, **more: subvol.points_error(points, mesh, **more),
-    "probe": lambda mesh, points, folder, **more: subvol.probe(mesh, [[0, 0, 0]], **more),
+    "probe": lambda mesh, points, folder, **more: subvol.probe(mesh, at=[[0, 0, 0]], **more),
     "measure": lambda mesh, points, folder, **more: subvol.measure(mesh, **more),
     "slice": lambda mesh, points, folder, **more: subvol.slice(mesh, **{"point": (0, 0, 0), "normal": (0, 0, 1), "resolution": 8, **more}),
     "surface": lambda mesh, points, folder, **more: subvol.surface(mesh, **more),
@@ -61,7 +61,7 @@ def test_schemes_of_tetrahedra_look_at_their_numbers_too():
         with pytest.raises(subvol.InvalidInput):
             subvol.sample(mesh, scheme="tetoct", spacing=wrong)
         with pytest.raises(subvol.InvalidInput):
-            subvol.probe(mesh, [[0, 0, 0]], scheme="tetoct", reach=wrong)
+            subvol.probe(mesh, at=[[0, 0, 0]], scheme="tetoct", reach=wrong)
 
 
 def test_cameras_colours_and_heat_maps():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lists of our objects, objects that are used by several threads or during a call, and properties that are made anew."""
+import html.parser
 import copy
 import pickle
 import subprocess
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 import subvol
 from conftest import grid_of
-from subvol import _core, _grids
+from subvol import _core, _grids, _notebook
 
 
 def run(program):
@@ -294,7 +295,7 @@ def test_text_of_objects_obeys_no_terminal(cube):
 def test_evaluate_is_what_probe_says(ball):
     low, high = ball.bounds
     places = low + (high - low) * np.random.default_rng(3).random((400, 3))
-    found, (values, inside) = subvol.probe(ball, places), subvol.evaluate(ball, "density", places)
+    found, (values, inside) = subvol.probe(ball, at=places), subvol.evaluate(ball, "density", places)
     assert np.array_equal(inside, found.inside) and 100 < inside.sum() < 400
     assert np.array_equal(values, found.fields["density"], equal_nan=True)
     cube = grid_of(2, field=lambda x: x @ [1, 2, -3])
@@ -306,7 +307,7 @@ def test_evaluate_refines_nothing(ball):
     """Two places cost what `probe` costs: the stages of the work are the same."""
     stages, probed = [], []
     subvol.evaluate(ball, "density", [[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: stages.append(stage))
-    subvol.probe(ball, [[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: probed.append(stage))
+    subvol.probe(ball, at=[[0, 0, 0], [.1, 0, 0]], progress=lambda stage, part: probed.append(stage))
     assert not any(stage.startswith("refine") for stage in stages) or set(stages) <= set(probed)
 
 
@@ -314,7 +315,7 @@ def test_a_field_is_the_limit(ball):
     """Values and gradients of the object are those of `probe`, many at once or one by one, as `compare` asks for them."""
     low, high = ball.bounds
     places = low + (high - low) * np.random.default_rng(5).random((500, 3))
-    found, field = subvol.probe(ball, places), subvol.as_field(ball, "density")
+    found, field = subvol.probe(ball, at=places), subvol.as_field(ball, "density")
     assert np.array_equal(field.values(places)[0], found.fields["density"], equal_nan=True)
     assert np.array_equal(field.gradients(places)[found.inside], found.gradients["density"][found.inside])
     assert np.isnan(field.gradients(places)[~found.inside]).all()
@@ -330,3 +331,62 @@ def test_errors_of_large_values_are_numbers(cube):
     _, report = subvol.approximate(cube, places, {"T": values})
     error = report["fields"]["T"]
     assert 0 < error["max"] / 20 <= error["rms"] <= error["max"] < 1e300
+
+
+class _Cells(html.parser.HTMLParser):
+    """The texts of the cells of tables, and whether each tag is closed in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.cells, self.texts = [], [], []
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        assert not attributes and tag in ("div", "b", "table", "thead", "tbody", "tr", "th", "td"), tag
+        self.open.append(tag)
+        if tag == "td":
+            self.cells.append("")
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+        if self.open[-1] == "td":
+            self.cells[-1] += data
+
+
+def test_a_notebook_shows_a_table_of_a_mesh():
+    cube = grid_of(2)
+    steps = np.arange(27.) - 5
+    fields = {"T<script>alert('&')</script>": steps, "u": cube.points * [3, 0, 4], "e\u202e\n": np.zeros(27)}
+    mesh = subvol.HexMesh(cube.points * 2, cube.cells, fields, creases=[[0, 1], [1, 2]])
+    text = mesh._repr_html_()
+    shown = _Cells(text)
+    rows = [shown.cells[k:k + 5] for k in range(0, len(shown.cells), 5)]
+    by_name = {row[0]: row[1:] for row in rows}
+    assert by_name["T<script>alert('&')</script>"] == ["points", "1", "-5", "21"] and "<script" not in text
+    assert by_name["u"] == ["points", "3", "0", "5"]  # the length of (3, 0, 4)
+    assert _notebook._field("gap", "points", np.array([np.nan, 2, 5, np.inf])) == ("gap", "points", "1", "2", "5")  # as files may have
+    assert _notebook._field("none", "cells", np.full(3, np.nan)) == ("none", "cells", "1", "–", "–")
+    assert "e\ufffd\ufffd" in by_name
+    every = "".join(shown.texts)
+    assert "27 points, 8 cells, 2 crease edges" in every and "bounds: [0, 2] × [0, 2] × [0, 2]" in every
+    many = subvol.HexMesh(cube.points, cube.cells, {f"field {k} " + "x" * 500: steps for k in range(300)})
+    assert len(many._repr_html_()) < 5000 and "and 280 more fields" in many._repr_html_()
+    assert "no fields" in subvol.HexMesh(cube.points, cube.cells)._repr_html_()
+
+
+def test_assigning_to_a_mesh_says_how_to_have_another(cube):
+    for change, message in ((lambda: cube.fields.update(T=1), r"mesh.with_fields\(\{...\}\) is a mesh with others"),
+                            (lambda: setattr(cube, "fields", {}), r"mesh.with_fields\(\{...\}\) is a mesh with others"),
+                            (lambda: setattr(cube, "points", cube.points), r"HexMesh\(points, cells, mesh.fields\) is a mesh with others"),
+                            (lambda: setattr(cube, "cells", cube.cells), r"HexMesh\(points, cells, mesh.fields\) is a mesh with others")):
+        with pytest.raises((TypeError, AttributeError), match=message):
+            change()
+    with pytest.raises(TypeError, match=r"cannot be changed; mesh.with_fields\(\{...\}\)"):
+        cube.fields["T"] = np.zeros(len(cube.points))
+    more = cube.with_fields({**cube.fields, "T": np.arange(float(len(cube.points)))})
+    assert list(more.fields) == ["x", "T"] and list(cube.fields) == ["x"]

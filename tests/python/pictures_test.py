@@ -297,3 +297,41 @@ def test_tubes_leave_no_gaps_in_an_opaque_body(ball):
         assert np.abs(tubes - body).max() > .1, "some lie before the body"
         lost = body[..., 3] - tubes[..., 3]
         assert lost.max() <= .25 + 1e-6 and (lost > 1e-3).sum() <= 4, "at most one of four samples, where a tube goes through the surface"
+
+
+def srgb_bytes(linear):
+    """The transfer function of IEC 61966-2-1, in bytes."""
+    linear = np.clip(linear.astype("f8"), 0, 1)
+    return np.round(255 * np.where(linear <= .0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - .055))
+
+
+def test_a_picture_as_srgb_is_what_a_png_has(tmp_path, ball):
+    ramp = np.zeros((16, 4096, 3), "f4")
+    ramp[..., 0] = np.arange(16 * 4096).reshape(16, 4096) / (16 * 4096 - 1)  # fine steps, so that each byte is met near its bounds
+    ramp[..., 1] = ramp[..., 0] ** 4
+    ramp[..., 2] = 1 - ramp[..., 0]
+    shown = subvol.Image(ramp).to_srgb()
+    assert shown.dtype == np.uint8 and shown.shape == ramp.shape and shown.flags.writeable
+    # Half a step of a byte is where rounding changes: 1e-6 of them lie within the rounding of a 32-bit float.
+    assert np.abs(shown - srgb_bytes(ramp)).max() <= 1 and np.count_nonzero(shown != srgb_bytes(ramp)) < 10
+    image = subvol.render(ball, size=(40, 30))
+    for background in (None, (.2, .4, .6), "none"):
+        image.write(tmp_path / "a.png", background)
+        pixels = plt_read(tmp_path / "a.png")
+        assert np.array_equal(pixels[..., :image.to_srgb(background).shape[2]], image.to_srgb(background))
+    rgba, behind = np.asarray(image), np.array([.2, .4, .6])
+    over = rgba[..., :3] + (1 - rgba[..., 3:]) * behind
+    assert np.abs(image.to_srgb(behind) - srgb_bytes(over)).max() <= 1
+    some = rgba[..., 3] > 0
+    clear = image.to_srgb("none")
+    assert clear.shape == (30, 40, 4) and np.array_equal(clear[..., 3], np.round(255 * rgba[..., 3].astype("f8")))
+    assert np.abs(clear[some][:, :3] - srgb_bytes(rgba[some][:, :3] / rgba[some][:, 3:])).max() <= 1
+    for wrong in ("blue", (1, 2), (np.nan, 0, 0)):
+        with pytest.raises(subvol.InvalidInput, match="background"):
+            image.to_srgb(wrong)
+
+
+def plt_read(path):
+    """The bytes of a .png, by a reader that is not ours."""
+    image = pytest.importorskip("PIL.Image")
+    return np.asarray(image.open(path))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Volumes of kernels."""
 import json
+import zipfile
 
 import numpy as np
 import pytest
@@ -96,3 +97,83 @@ def test_the_best_gaussian():
 
 def test_expressions_make_no_field_by_themselves(cube):
     assert list(cube.fields) == ["x"]
+
+
+def ply_table(path):
+    """The vertices of a binary .ply of kernels, read without the library."""
+    head, _, body = path.read_bytes().partition(b"end_header\n")
+    lines = head.decode().split("\n")
+    start = next(k for k, line in enumerate(lines) if line.startswith("element vertex"))
+    names = []
+    for line in lines[start + 1:]:
+        if not line.startswith("property"):
+            break
+        _, kind, name = line.split()
+        names.append((name, {"double": "<f8", "float": "<f4"}[kind]))
+    return np.frombuffer(body, np.dtype(names), int(lines[start].split()[2]))
+
+
+def columns(table, *names):
+    return np.stack([table[name] for name in names], -1)
+
+
+def test_kernels_of_the_command_are_arrays_of_numpy(tmp_path, command):
+    for options in ([], ["--correction", "full", "--per-edge", "2"]):
+        command("points", "model:ball:3", "-o", tmp_path / "k.npz", *options)
+        command("points", "model:ball:3", "-o", tmp_path / "k.ply", *options)
+        command("points", "model:ball:3", "-o", tmp_path / "k.svk", *options)
+        table = ply_table(tmp_path / "k.ply")
+        with np.load(tmp_path / "k.npz", allow_pickle=False) as k:
+            assert np.array_equal(k["centers"], columns(table, "x", "y", "z")) and k["centers"].dtype == np.float64
+            assert np.array_equal(k["frames"], columns(table, "sxx", "sxy", "sxz", "syy", "syz", "szz")) and k["frames"].dtype == np.float32
+            assert k["channels"].tolist() == [b"density"]
+            assert np.array_equal(k["values"], [table["value"]]) and np.array_equal(k["moments"], [table["moment"]])
+            assert np.array_equal(k["gradients"], [columns(table, "gx", "gy", "gz")])
+            assert ("hessians" in k) == bool(options)
+            if options:
+                assert np.array_equal(k["hessians"], [columns(table, "hxx", "hxy", "hxz", "hyy", "hyz", "hzz")])
+            assert json.loads(k["kernel"].item())["type"] == "compact"
+            corners = k["boundary_points"][k["boundary_triangles"]]
+            assert np.array_equal(k["bounds"], [corners.min((0, 1)), corners.max((0, 1))])
+            volume = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+            assert volume == pytest.approx(4 / 3 * np.pi, rel=.15)  # outward, of a ball of radius 1
+            library = subvol.read_points(tmp_path / "k.svk")
+            assert np.array_equal(k["centers"], library.centers) and np.array_equal(k["values"][0], library.values["density"])
+        again = subvol.read_points(tmp_path / "k.npz")
+        assert again.kernel == library.kernel and np.array_equal(again.frames, library.frames)
+        assert np.array_equal(again.gradients["density"], library.gradients["density"]) and set(again.hessians) == set(library.hessians)
+        assert np.array_equal(again.boundary[0], library.boundary[0]) and np.array_equal(again.boundary[1], library.boundary[1])
+
+
+def test_arrays_of_kernels_written_by_python(tmp_path, ball_points):
+    given = subvol.RbfVolume(ball_points.centers, ball_points.frames,
+                             {"Dichte ρ/ρ₀": ball_points.values["density"], "b": np.arange(len(ball_points))}, kernel=ball_points.kernel)
+    subvol.write_points(given, tmp_path / "a.npz")
+    subvol.write_points(given, tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    assert zipfile.ZipFile(tmp_path / "a.npz").testzip() is None
+    arrays = np.load(tmp_path / "a.npz")
+    assert [name.decode() for name in arrays["channels"]] == ["Dichte ρ/ρ₀", "b"]
+    assert arrays["values"][1].tolist() == list(range(len(given))) and arrays["boundary_triangles"].shape == (0, 3)
+    again = subvol.read_points(tmp_path / "a.npz")
+    assert list(again.values) == ["Dichte ρ/ρ₀", "b"] and np.array_equal(again.centers, given.centers)
+
+    kept = dict(arrays)
+    for name, change in (("missing", {"frames": None}), ("short", {"values": kept["values"][:, :3]}), ("texts", {"centers": np.array(["a"])}),
+                         ("objects", {"channels": np.array([b"a", {}], object)})):
+        made = {key: value for key, value in {**kept, **change}.items() if value is not None}
+        np.savez(tmp_path / f"{name}.npz", **made)
+        with pytest.raises(subvol.InvalidInput, match=f"{name}.npz"):
+            subvol.read_points(tmp_path / f"{name}.npz")
+    (tmp_path / "cut.npz").write_bytes((tmp_path / "a.npz").read_bytes()[:5000])
+    (tmp_path / "text.npz").write_text("no archive")
+    damaged = bytearray((tmp_path / "a.npz").read_bytes())
+    damaged[1000] ^= 255
+    (tmp_path / "damaged.npz").write_bytes(damaged)
+    for name in ("cut", "text", "damaged"):
+        with pytest.raises(subvol.InvalidInput, match=f"{name}.npz"):
+            subvol.read_points(tmp_path / f"{name}.npz")
+    with pytest.raises(subvol.FileError, match="no such file"):
+        subvol.read_points(tmp_path / "none.npz")
+    with pytest.raises(subvol.InvalidInput, match="only .ply files"):
+        subvol.write_points(given, tmp_path / "c.npz", ascii=True)

@@ -50,7 +50,7 @@ def test_fields_of_calls_are_quantities(bar: subvol.HexMesh) -> None:
 
 def test_what_is_not_linear_is_that_of_the_place(bar: subvol.HexMesh) -> None:
     place = [[.3, 1.7, 2.6]]
-    stress = subvol.probe(bar, place).fields["S"][0]
+    stress = subvol.probe(bar, at=place).fields["S"][0]
     xx, yy, zz, xy, yz, xz = stress
     expected = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
     values, inside = subvol.evaluate(bar, "mises(S)", place)

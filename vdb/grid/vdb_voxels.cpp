@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "openvdb_grids.h"
 
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
@@ -71,12 +72,12 @@ private:
 
 class GridVoxels : public Voxels {
 public:
-    explicit GridVoxels(openvdb::FloatGrid::ConstPtr grid) : grid_(std::move(grid)) {
+    explicit GridVoxels(openvdb::FloatGrid::ConstPtr grid) : grid_(std::move(grid)), axes_(detail::axes_of(*grid_)) {
         const openvdb::CoordBBox box = grid_->evalActiveVoxelBoundingBox();
         range_ = {voxel_of(box.min()), voxel_of(box.max())};
     }
-    Mat3 to_world() const override { return {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}; }
-    Vec3 origin() const override { return vec_of(grid_->indexToWorld(openvdb::Vec3d(0.0))); }
+    Mat3 to_world() const override { return axes_.first; }
+    Vec3 origin() const override { return axes_.second; }
     std::array<Voxel, 2> range() const override { return range_; }
     std::unique_ptr<VoxelCursor> cursor() const override {
         return std::make_unique<Cursor>(grid_->constTree(), is_level_set());
@@ -84,21 +85,46 @@ public:
     bool is_level_set() const override { return grid_->getGridClass() == openvdb::GRID_LEVEL_SET; }
 
 private:
-    Vec3 column(const openvdb::Vec3d& axis) const {
-        return vec_of(grid_->transform().baseMap()->applyJacobian(axis));  // the linear part of an affine map
-    }
-
     openvdb::FloatGrid::ConstPtr grid_;
+    std::pair<Mat3, Vec3> axes_;
     std::array<Voxel, 2> range_;
 };
 
 }  // namespace
 
-std::unique_ptr<Voxels> detail::VdbData::voxels() const {
-    if (!grid->transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid " + detail::in_quotes(grid->getName()),
+std::pair<Mat3, Vec3> detail::axes_of(const openvdb::GridBase& grid) {
+    if (!grid.transform().isLinear()) {
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid " + in_quotes(grid.getName()),
                     "a linear transform, not a frustum");
     }
+    const auto map = grid.transform().baseMap();
+    const auto edge = [&](const openvdb::Vec3d& axis) { return vec_of(map->applyJacobian(axis)); };
+    return {Mat3(edge({1, 0, 0}), edge({0, 1, 0}), edge({0, 0, 1})), vec_of(map->applyMap(openvdb::Vec3d(0.0)))};
+}
+
+void detail::check_axes(const Mat3& to_world, const Vec3& origin, const std::string& name) {
+    constexpr double kMostVoxel_world = 1e30, kLeastAngle = 1e-6;  // of the volume between edges of length 1
+    const std::string where = "grid " + in_quotes(name);
+    double box = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double edge = glm::length(to_world[axis]);
+        if (!(edge >= kLeastVoxel_world && edge <= kMostVoxel_world)) {
+            throw Error(ErrorCode::InvalidInput, "an edge of its voxels is " + number_text(edge) + " long", where,
+                        "1.45e-5 to 1e30");
+        }
+        box *= edge;
+    }
+    if (!(std::abs(glm::determinant(to_world)) >= kLeastAngle * box)) {
+        throw Error(ErrorCode::InvalidInput, "its transform is singular: the voxels are flat", where);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(std::abs(origin[axis]) <= kMostVoxel_world)) {
+            throw Error(ErrorCode::InvalidInput, "its transform moves by " + number_text(origin[axis]), where, "-1e30 to 1e30");
+        }
+    }
+}
+
+std::unique_ptr<Voxels> detail::VdbData::voxels() const {
     if (!floats) {
         throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid " + detail::in_quotes(grid->getName()));
     }

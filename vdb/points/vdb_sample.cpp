@@ -328,13 +328,14 @@ VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOption
     const Lattice lattice{double(n) * to_world, voxels->origin() + to_world * Vec3(0.5 * (n - 1))};
     const Writer writer(lattice, options.correction, result.volume);
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t k) {
+        if (options.progress && options.progress->cancelled()) return;
         Differences differences(*coarse.tree);
         std::size_t point = first[k];
         for (auto voxel = leaves[k]->cbeginValueOn(); voxel; ++voxel) writer.write(point++, voxel.getCoord(), differences);
     });
+    report_progress(options.progress, "sample voxels", 1);
     result.volume.bounds = box_of(result.volume);
     validate(result.volume);
-    report_progress(options.progress, "sample voxels", 1);
     return result;
 }
 

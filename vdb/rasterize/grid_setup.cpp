@@ -13,8 +13,6 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB treats a transform as singular if its determinant is below 3e-15
-
 double checked_voxel_size(const Box& box, const RasterizeOptions& options) {
     if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
         throw Error(ErrorCode::InvalidInput, "the voxel size is not positive");
@@ -25,44 +23,12 @@ double checked_voxel_size(const Box& box, const RasterizeOptions& options) {
     return size;
 }
 
-/// Refuses a transform of a file whose voxels have no volume, or one that no grid has.
-///
-/// to_world: the edges of a voxel in its columns; origin: the centre of voxel 0, 0, 0
-void check_transform(const Mat3& to_world, const Vec3& origin, const std::string& name) {
-    constexpr double kMostVoxel_world = 1e30, kLeastAngle = 1e-6;  // of the volume between edges of length 1
-    const std::string where = "grid " + in_quotes(name);
-    double box = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double edge = glm::length(to_world[axis]);
-        if (!(edge >= kLeastVoxel_world && edge <= kMostVoxel_world)) {
-            throw Error(ErrorCode::InvalidInput, "an edge of its voxels is " + number_text(edge) + " long", where,
-                        "1.45e-5 to 1e30");
-        }
-        box *= edge;
-    }
-    if (!(std::abs(glm::determinant(to_world)) >= kLeastAngle * box)) {
-        throw Error(ErrorCode::InvalidInput, "its transform is singular: the voxels are flat", where);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(origin[axis]) <= kMostVoxel_world)) {
-            throw Error(ErrorCode::InvalidInput, "its transform moves by " + number_text(origin[axis]), where, "-1e30 to 1e30");
-        }
-    }
-}
-
 ToVoxels to_voxels_of(const openvdb::GridBase& like) {
-    if (!like.transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid " + detail::in_quotes(like.getName()),
-                    "a linear transform, not a frustum");
-    }
-    const auto vec = [](const openvdb::Vec3d& v) { return Vec3(v[0], v[1], v[2]); };
-    const auto map = like.transform().baseMap();
-    const Mat3 to_world(vec(map->applyJacobian({1, 0, 0})), vec(map->applyJacobian({0, 1, 0})),
-                        vec(map->applyJacobian({0, 0, 1})));
-    check_transform(to_world, vec(map->applyMap(openvdb::Vec3d(0.0))), like.getName());
+    const auto [to_world, origin] = axes_of(like);
+    check_axes(to_world, origin, like.getName());
     const double size = std::cbrt(std::abs(glm::determinant(to_world)));
     const Mat3 linear = size * glm::inverse(to_world);
-    return {linear, -(linear * vec(map->applyMap(openvdb::Vec3d(0.0)))), size};
+    return {linear, -(linear * origin), size};
 }
 
 }  // namespace

@@ -83,7 +83,8 @@ struct LimitProbe::State {
     [[nodiscard]] ProbeResult empty_result(std::size_t places) const;
     void run(std::span<const Vec3> places, std::span<const std::size_t> to, std::vector<Open> open,
              std::span<const NearPlace> candidates, Progress* progress, ProbeResult& result) const;
-    [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
+    [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates,
+                                         Progress* progress) const;
     void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::span<const std::size_t> to,
                 std::span<const NearPlace> candidates, ProbeResult& result) const;
     void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step, double distance,
@@ -113,7 +114,8 @@ Box LimitProbe::box() const {
 }
 
 /// The places that have candidates, with the first of these.
-std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const {
+std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vector<NearPlace>& candidates,
+                                          Progress* progress) const {
     constexpr std::size_t kPart = 1024;
     struct Part {
         std::vector<NearPlace> candidates;
@@ -121,6 +123,7 @@ std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vec
     };
     std::vector<Part> parts((places.size() + kPart - 1) / kPart);
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+        if (progress && progress->cancelled()) return;  // the next report throws
         auto& [all, open] = parts[part];
         std::vector<NearPlace> found;
         for (std::size_t p = part * kPart; p < std::min(places.size(), (part + 1) * kPart); ++p) {
@@ -265,7 +268,7 @@ ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) con
             numbers.push_back(begin + p);
         }
         std::vector<NearPlace> candidates;
-        std::vector<Open> open = state_->find(sorted, candidates);
+        std::vector<Open> open = state_->find(sorted, candidates, progress);
         state_->run(sorted, numbers, std::move(open), candidates, progress, result);
     }
     report_progress(progress, "probe", 1);

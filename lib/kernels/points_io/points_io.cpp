@@ -51,13 +51,15 @@ bool is_points_file(const std::filesystem::path& path) {
 }
 
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
-    if (format_of(path) != ".PLY" && format_of(path) != ".VTP") {
+    if (format_of(path) != ".PLY" && format_of(path) != ".VTP" && format_of(path) != ".NPZ") {
         throw Error(ErrorCode::InvalidInput, "points cannot be written in this format", path.string(),
-                    format_of(path) == ".SVK" ? "write_kernel_file writes .svk" : ".ply or .vtp");
+                    format_of(path) == ".SVK" ? "write_kernel_file writes .svk" : ".ply, .vtp or .npz");
     }
     validate(volume);
     if (format_of(path) == ".PLY") {
         write_ply(path, volume, options);
+    } else if (format_of(path) == ".NPZ") {
+        write_npz(path, volume);
     } else {
         write_vtp(path, volume, options.note);
     }

@@ -192,7 +192,9 @@ int intervals_of_hull(const Topology& topology, const std::vector<int>& interval
 
 /// Samples at counts that differ from edge to edge, or with values that are not the scheme's.
 SampleResult sample_graded(const HexMesh& control, const SampleOptions& options) {
+    report_progress(options.progress, "topology", 0);
     const Topology topology = build_topology(control);
+    report_progress(options.progress, "topology", 1);
     const detail::CellBlocks blocks(control, refinement(options, 2).scheme, options.progress);
     SampleResult result;
     int on_hull = 1;

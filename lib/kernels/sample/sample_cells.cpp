@@ -238,6 +238,7 @@ private:
         report_progress(options_.progress, stage, 0);
         std::atomic<std::size_t> flat{0};
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
+            if (options_.progress && options_.progress->cancelled()) return;  // the report below throws
             KernelWriter writer(topology_, counts_, blocks_, control_, options_, diagonal_, result_.volume);
             std::size_t flat_here = 0;
             for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);

@@ -132,12 +132,14 @@ SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool ac
         report_progress(options.progress, "sample", turn, lines.size());
         const tbb::blocked_range<std::size_t> points(turn, std::min(lines.size(), turn + kTurn), 256);
         tbb::parallel_for(points, [&](const auto& range) {
+            if (options.progress && options.progress->cancelled()) return;  // the next report throws
             PointSampler sampler(on_limit, size, lines, across_points, options, result.volume);
             std::size_t flat_here = 0;
             for (std::size_t p = range.begin(); p != range.end(); ++p) flat_here += sampler.sample(static_cast<Index>(p));
             flat += flat_here;
         });
     }
+    report_progress(options.progress, "sample", lines.size(), lines.size());
     result.volume.centers = std::move(on_limit.points);
     if (options.correction == Correction::Full) fit_hessians(lines, result.volume);
     report_progress(options.progress, "sample", 1);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -77,6 +79,47 @@ struct GridDifference {
 };
 /// throws: Error(InvalidInput) if the voxels are not floats, or the transforms differ: an index is another place then
 [[nodiscard]] GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b);
+
+/// All voxels of a box as one array.
+///
+/// The centre of voxel (i, j, k) is at world = to_world · (i, j, k) + origin; its values begin at
+/// components · (k + size[2] · (j + size[1] · i)).
+struct GridArray {
+    std::array<std::size_t, 3> size{};  ///< voxels along the three axes
+    std::size_t components = 1;         ///< of a voxel: 1, or 3 of a vector
+    Mat3 to_world{1};                   ///< the edges of a voxel in its columns
+    Vec3 origin{};                      ///< the centre of the first voxel, world
+    std::vector<float> values{};        ///< NaN in voxels that are not active; a level set has values everywhere
+};
+
+/// Returns the box of the active voxels without its values; sizes of 0 if no voxel is active.
+///
+/// throws: Error(InvalidInput) if the voxels are neither floats nor vectors, the transform is not linear, or the box has more
+///         than 2^31 voxels
+[[nodiscard]] GridArray grid_box(const VdbGrid& grid);
+
+/// Copies the voxels in the box of the active ones.
+///
+/// throws: as `grid_box`
+/// cost:   O(voxels of the box)
+[[nodiscard]] GridArray grid_array(const VdbGrid& grid);
+
+struct GridArrayOptions {
+    std::string name = "density";
+    bool level_set = false;  ///< the values are distances from a surface, below 0 inside
+    /// For a level set, the largest distance that it has, world: voxels that are as far or farther are not active. none: the
+    /// largest of the array
+    std::optional<double> background{};
+};
+
+/// Makes a grid of an array. Voxels whose value is NaN are not active.
+///
+/// If the voxels are cubes along the axes and `origin` is a multiple of their size, their centres are at world = h·ijk as in
+/// all grids of that voxel size which this library makes; else the grid's transform has the origin.
+///
+/// throws: Error(InvalidInput) if there is no voxel, the sizes differ from the number of values, a value is infinite, or voxels
+///         are flat or too small for OpenVDB; for a level set also if voxels are no cubes, values are vectors, or one is NaN
+[[nodiscard]] VdbGrid make_grid(const GridArray& array, const GridArrayOptions& options = {});
 
 enum class VdbCompression { None, Zip, Blosc };
 
