@@ -254,7 +254,7 @@ private:
     /// Leaves out the columns with published numbers about a study's own inputs, and the tables of these alone.
     static void leave_out_published(Json& tables) {
         const auto published = [](const std::string& key) { return key.starts_with("given."); };
-        Json left = Json::array();
+        Json own = Json::array();
         for (Json& table : tables) {
             bool about_others = false;
             const Json where = table.value("where", Json::object());
@@ -267,9 +267,9 @@ private:
                 }
                 table[list] = std::move(kept);
             }
-            if (!about_others) left.push_back(std::move(table));
+            if (!about_others) own.push_back(std::move(table));
         }
-        tables = std::move(left);
+        tables = std::move(own);
     }
 
     static std::string plain_name(std::string name) {

@@ -28,7 +28,7 @@
 #include "sharp_paths.h"
 #include "subvol/cell.h"
 #include "subvol/detail/disjoint_sets.h"
-#include "subvol/detail/fold_verdicts.h"
+#include "subvol/detail/fold_samples.h"
 #include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"

@@ -14,7 +14,6 @@
 #include "segment_rules.h"
 #include "subvol/cell.h"
 #include "subvol/certificate.h"
-#include "subvol/detail/fold_verdicts.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/detail/regular_grid.h"
 #include "subvol/error.h"

@@ -189,6 +189,7 @@ TEST_F(PointsIo, WhatCannotBeWrittenLeavesNothing) {
         EXPECT_THAT(error_of([&] { write_points(path(form.file), volume, form.options); }, ErrorCode::Io),
                     HasSubstr(std::string(form.file) + ": cannot be written"));
     }
+    EXPECT_THAT(error_of([&] { write_points(path("a.npz"), volume); }, ErrorCode::Io), HasSubstr("a.npz: cannot be written"));
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
     std::signal(SIGXFSZ, handler);
     EXPECT_EQ(file_count(), 0u);
@@ -197,7 +198,7 @@ TEST_F(PointsIo, WhatCannotBeWrittenLeavesNothing) {
     std::filesystem::create_directory(path("a.boundary.vtp"));
     EXPECT_THAT(error_of([&] { write_points(path("a.vtp"), volume); }, ErrorCode::Io), HasSubstr("is a folder"));
     EXPECT_EQ(file_count(), 1u);
-    EXPECT_THAT(error_of([&] { write_points(path("a.obj"), volume); }), HasSubstr(".ply or .vtp"));
+    EXPECT_THAT(error_of([&] { write_points(path("a.obj"), volume); }), HasSubstr(".ply, .vtp or .npz"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read_points(path("none.ply"))); }, ErrorCode::Io), HasSubstr("none.ply"));
 }
 

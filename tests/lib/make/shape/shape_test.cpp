@@ -172,11 +172,14 @@ TEST(ControlMesh, OfBoxesThatCrossIsTheirUnion) {
     const auto first = static_cast<Index>(boxes.points.size());
     for (const Vec3& x : one.points) boxes.points.push_back(x + 0.5);
     for (const auto& t : one.triangles) boxes.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    const ControlMesh made = control_mesh_of(boxes, {.cells = 6});
+    const ControlMesh made = control_mesh_of(boxes, {.cells = 8});
     EXPECT_EQ(made.report.surface.united, 1U);
     EXPECT_FALSE(made.report.enclosed_world.has_value());
     EXPECT_NEAR(limit_volume(made.mesh), 1.875,
                 0.06);  // the notch between the boxes has no creases, as they are not joined there
+    // Drawn to the surface alone, the limit folds in ten cells at the notch, and the least scaled Jacobian is .01.
+    EXPECT_LE(made.report.shape.folds.folded, 2U);
+    EXPECT_GT(made.report.min_scaled_jacobian, 0.2);
 }
 
 TEST(ControlMesh, IsTheSameFarFromTheOrigin) {
@@ -219,18 +222,19 @@ TEST(ControlMesh, OfARingHasItsHole) {
     EXPECT_LT(made.report.shape.after.rms, 0.03 * made.report.side_world);
 }
 
-// Its section is as wide as a cell and a half: drawn to the surface alone, cells fold and have a scaled Jacobian of .03.
-TEST(ControlMesh, OfAThinRingHasSoundCells) {
-    const ControlMesh made = control_mesh_of(ring_of(1, 0.1), {.cells = 12});
+// Drawn to the surface alone, its cells have a scaled Jacobian of .07.
+TEST(ControlMesh, OfAThinBodyHasNoFlatCells) {
+    Surface body = test::sphere(12);
+    for (Vec3& x : body.points) x *= Vec3(1, 0.15, 0.12);
+    const ControlMesh made = control_mesh_of(body, {.cells = 12});
     EXPECT_EQ(made.report.shape.folds.folded, 0U);
-    EXPECT_EQ(made.report.shape.inverted_cells.size(), 0U);
     EXPECT_GE(made.report.min_scaled_jacobian, 0.3);
     EXPECT_GT(measure_cells(refine(made.mesh, {.levels = 3})).min_scaled_jacobian, 0);
-    EXPECT_LT(made.report.shape.after.rms, 0.25 * made.report.side_world);
+    EXPECT_LT(made.report.shape.after.rms, 0.15 * made.report.side_world);
     // What that costs is said.
-    EXPECT_NEAR(made.report.enclosed_world.value(), 2 * std::numbers::pi * std::numbers::pi * 0.01, 0.004);
+    EXPECT_NEAR(made.report.enclosed_world.value(), 4 * std::numbers::pi / 3 * 0.15 * 0.12, 1e-3);
     EXPECT_NEAR(made.report.shape.volume_world, limit_volume(made.mesh), 1e-3 * made.report.shape.volume_world);
-    EXPECT_GT(made.report.shape.volume_world, 1.1 * made.report.enclosed_world.value());
+    EXPECT_GT(made.report.shape.volume_world, 1.02 * made.report.enclosed_world.value());
     EXPECT_THAT(made.report.shape.warnings.at(0), HasSubstr("% more than the surface"));
 }
 

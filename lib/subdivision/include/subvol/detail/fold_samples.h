@@ -23,4 +23,8 @@ struct CellSamples {
 [[nodiscard]] std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index> cells,
                                                     const SchemeOptions& scheme, Progress* progress);
 
+/// The verdicts of `check_folds` for some cells of a mesh, ascending; cost: that of these cells
+[[nodiscard]] std::vector<FoldVerdict> fold_verdicts(const HexMesh& mesh, std::span<const Index> cells,
+                                                     const FoldOptions& options);
+
 }  // namespace subvol::detail
