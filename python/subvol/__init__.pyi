@@ -121,7 +121,7 @@ def control_mesh(
     """A mesh of hexahedra whose limit fills a closed surface of triangles.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
-    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, min_scaled_jacobian, and surface:
+    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world, min_scaled_jacobian, and surface:
     walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
     sheets and turned triangles, one_sided and many_edges.
 
@@ -185,7 +185,7 @@ def fit_shape(
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them.
     Returns the mesh, and a report: before and after, the distances of the boundary from the surface (rms, max, max_at; covered_rms and
     covered_max without places over holes, which are hole_part of its area) and of the surface from the boundary (missed_rms, missed_max,
-    missed_at), rounds, moved_world, folds (verdict, cells, open_volume, sampled), mended, folded_cells, inverted_cells, open_edges and
+    missed_at), rounds, moved_world, volume_world, folds (verdict, cells, open_volume, sampled), mended, folded_cells, inverted_cells, open_edges and
     open_length (of the surface), and warnings if something is wrong.
 
     scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,

@@ -216,6 +216,7 @@ class ShapeReport(_Warnings):
     after: ShapeError
     rounds: int
     moved_world: float
+    volume_world: float
     folds: FoldFigures
     mended: int
     folded_cells: list[int]
@@ -248,7 +249,11 @@ class SurfaceBodies(TypedDict):
     many_edges: int
 
 
-class ControlMeshReport(ShapeReport):
+class _Enclosed(TypedDict, total=False):
+    enclosed_world: float  # if the surface has no holes and no parts cross
+
+
+class ControlMeshReport(ShapeReport, _Enclosed):
     """By `control_mesh`."""
 
     parts: int
