@@ -30,11 +30,25 @@ std::vector<Vec3> first_places() {
     return places;
 }
 
+/// Where determinants are small in a cell, and where they are beside the lengths of the derivatives: a cell that is thin at one
+/// place may fold at another.
+struct Seeds {
+    std::array<Vec3, 2> uvw{};
+    double least_shape = 1;
+};
+
+/// det / |∂x/∂u| |∂x/∂v| |∂x/∂w|, −1 to 1; 0 where a derivative is 0.
+double shape_of(const Mat3& jacobian, double determinant) {
+    const double lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
+    return lengths > 0 ? determinant / lengths : 0;
+}
+
 }  // namespace
 
 std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index> cells, const SchemeOptions& scheme,
                                       Progress* progress) {
     std::vector<CellSamples> found(cells.size());
+    std::vector<Seeds> seeds(cells.size());
     if (cells.empty()) return found;
     constexpr double kTolerance = 1e-6, kFine = 1e-9;
     const LimitEvaluator limit(mesh, {.scheme = scheme, .tolerance = kTolerance});
@@ -46,12 +60,12 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
         const std::size_t end = std::min(cells.size(), begin + kTogether);
         for (std::size_t round = 0; round < kRadii.size(); ++round) {
             report_progress(progress, "sample", begin * kRadii.size() + round * (end - begin), cells.size() * kRadii.size());
-            const std::size_t each = round == 0 ? first.size() : kNear;
+            const std::size_t each = round == 0 ? first.size() : seeds[0].uvw.size() * kNear;
             std::vector<LimitQuery> queries;
             queries.reserve(each * (end - begin));
             for (std::size_t k = begin; k < end; ++k) {
                 for (std::size_t n = 0; n < each; ++n) {
-                    const Vec3 near = found[k].least.uvw + kRadii[round] * (2.0 * spread(n) - 1.0);
+                    const Vec3 near = seeds[k].uvw[n / kNear % 2] + kRadii[round] * (2.0 * spread(n % kNear) - 1.0);
                     queries.push_back({cells[k], round == 0 ? first[n] : glm::clamp(near, Vec3(0.0), Vec3(1.0))});
                 }
             }
@@ -74,9 +88,16 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
             }
             for (std::size_t n = 0; n < queries.size(); ++n) {
                 CellSamples& cell = found[begin + n / each];
+                Seeds& near = seeds[begin + n / each];
                 const double determinant = determinants[n];
+                const double shape = shape_of(at.jacobians[n], determinant);
+                if (shape < near.least_shape) {
+                    near.least_shape = shape;
+                    near.uvw[1] = queries[n].uvw;
+                }
                 if (cell.places == 0 || determinant < cell.least.determinant) {
                     cell.least = {queries[n].cell, queries[n].uvw, at.positions[n], determinant, true};
+                    near.uvw[0] = queries[n].uvw;
                 }
                 ++cell.places;
                 cell.size += std::abs(determinant);
