@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 
 #include "subvol/limit.h"
@@ -21,26 +23,56 @@ Vec3 spread(std::size_t k) {
     return at - glm::floor(at);
 }
 
-/// Corners, middles of edges and of sides, the middle of the cell, and places between them.
+/// Corners, middles of edges and of sides, the middle of the cell, the same places an eighth of the cell away from corners and
+/// edges, which may be irregular, and places between them.
 std::vector<Vec3> first_places() {
     std::vector<Vec3> places;
     for (int i = 0; i < 27; ++i) places.push_back(0.5 * Vec3(i % 3, i / 3 % 3, i / 9));
+    for (std::size_t k = 0; k < 27; ++k) {
+        const Vec3 at = places[k];
+        const auto middles = std::ranges::count(std::array{at.x, at.y, at.z}, 0.5);
+        if (middles <= 1) places.push_back(0.5 + 0.75 * (at - 0.5));
+    }
     constexpr std::size_t kBetween = 101;
     for (std::size_t k = 0; k < kBetween; ++k) places.push_back(spread(k));
     return places;
 }
 
-/// Where determinants are small in a cell, and where they are beside the lengths of the derivatives: a cell that is thin at one
-/// place may fold at another.
+/// Places of a cell from which smaller determinants are looked for: of the first, for the smallest determinant, and of others
+/// that are apart, for the smallest one beside the lengths of the derivatives. A cell that is thin at one place may fold at
+/// another.
 struct Seeds {
-    std::array<Vec3, 2> uvw{};
-    double least_shape = 1;
+    std::array<Vec3, 4> uvw{};
+    std::array<double, 4> least{};
 };
 
 /// det / |∂x/∂u| |∂x/∂v| |∂x/∂w|, −1 to 1; 0 where a derivative is 0.
 double shape_of(const Mat3& jacobian, double determinant) {
     const double lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
     return lengths > 0 ? determinant / lengths : 0;
+}
+
+/// determinants, shapes: at the places
+Seeds seeds_of(std::span<const Vec3> places, std::span<const double> determinants, std::span<const double> shapes) {
+    Seeds seeds;
+    const auto least = static_cast<std::size_t>(std::ranges::min_element(determinants) - determinants.begin());
+    seeds.uvw[0] = places[least];
+    seeds.least[0] = determinants[least];
+    std::vector<std::size_t> order(places.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::less<>(), [&](std::size_t n) { return shapes[n]; });
+    constexpr double kApart = 0.25;
+    std::size_t count = 1;
+    for (const std::size_t n : order) {
+        const auto near = [&](std::size_t k) { return glm::distance(seeds.uvw[k], places[n]) < kApart; };
+        bool apart = true;
+        for (std::size_t k = 1; k < count; ++k) apart = apart && !near(k);
+        if (!apart) continue;
+        seeds.uvw[count] = places[n];
+        seeds.least[count] = shapes[n];
+        if (++count == seeds.uvw.size()) break;
+    }
+    return seeds;
 }
 
 }  // namespace
@@ -65,7 +97,8 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
             queries.reserve(each * (end - begin));
             for (std::size_t k = begin; k < end; ++k) {
                 for (std::size_t n = 0; n < each; ++n) {
-                    const Vec3 near = seeds[k].uvw[n / kNear % 2] + kRadii[round] * (2.0 * spread(n % kNear) - 1.0);
+                    const Vec3 near =
+                        seeds[k].uvw[n / kNear % seeds[k].uvw.size()] + kRadii[round] * (2.0 * spread(n % kNear) - 1.0);
                     queries.push_back({cells[k], round == 0 ? first[n] : glm::clamp(near, Vec3(0.0), Vec3(1.0))});
                 }
             }
@@ -86,18 +119,26 @@ std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index
                 determinants[numbers[n]] = std::max(determinants[numbers[n]], glm::determinant(again.jacobians[n]));
                 at.positions[numbers[n]] = again.positions[n];
             }
+            std::vector<double> shapes(queries.size());
+            for (std::size_t n = 0; n < queries.size(); ++n) shapes[n] = shape_of(at.jacobians[n], determinants[n]);
+            for (std::size_t k = begin; k < end && round == 0; ++k) {
+                const std::size_t from = (k - begin) * each;
+                seeds[k] = seeds_of(first, std::span(determinants).subspan(from, each), std::span(shapes).subspan(from, each));
+            }
             for (std::size_t n = 0; n < queries.size(); ++n) {
                 CellSamples& cell = found[begin + n / each];
-                Seeds& near = seeds[begin + n / each];
                 const double determinant = determinants[n];
-                const double shape = shape_of(at.jacobians[n], determinant);
-                if (shape < near.least_shape) {
-                    near.least_shape = shape;
-                    near.uvw[1] = queries[n].uvw;
+                if (round > 0) {
+                    Seeds& near = seeds[begin + n / each];
+                    const std::size_t seed = n % each / kNear;
+                    const double value = seed == 0 ? determinant : shapes[n];
+                    if (value < near.least[seed]) {
+                        near.least[seed] = value;
+                        near.uvw[seed] = queries[n].uvw;
+                    }
                 }
                 if (cell.places == 0 || determinant < cell.least.determinant) {
                     cell.least = {queries[n].cell, queries[n].uvw, at.positions[n], determinant, true};
-                    near.uvw[0] = queries[n].uvw;
                 }
                 ++cell.places;
                 cell.size += std::abs(determinant);

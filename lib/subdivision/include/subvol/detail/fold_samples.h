@@ -17,10 +17,10 @@ struct CellSamples {
 };
 
 /// Samples the limit of cells: at corners, in the middle of edges and sides, at places inside, and then nearer and nearer to
-/// the smallest determinant and to the smallest one beside the lengths of the derivatives. One that is negative is so with a
-/// tolerance a thousand times finer, too.
+/// the smallest determinant and to the three smallest ones beside the lengths of the derivatives. One that is negative is so
+/// with a tolerance a thousand times finer, too.
 ///
-/// cells: of the mesh, each once; cost: about 1 ms a cell, parallel; the same bits for any number of threads
+/// cells: of the mesh, each once; cost: about 2 ms a cell, parallel; the same bits for any number of threads
 [[nodiscard]] std::vector<CellSamples> sample_folds(const HexMesh& mesh, std::span<const Index> cells,
                                                     const SchemeOptions& scheme, Progress* progress);
 
