@@ -222,7 +222,7 @@ void warn_of(const EnclosureReport& found, std::vector<std::string>& warnings) {
 }
 
 void warn_of_volume(ControlMeshReport& report, OptionNames names) {
-    if (!report.enclosed_world) return;
+    if (!(report.enclosed_world > 0.0)) return;
     const double part = report.shape.volume_world / *report.enclosed_world - 1;
     constexpr double kMuch = 0.02;
     if (std::abs(part) < kMuch) return;
@@ -396,7 +396,9 @@ std::vector<Option> options_of(ControlMeshOptions& options) {
         Option("max-cells", options.max_cells).between(1, 1'000'000'000).help("N", "the most cells that may be made"),
         Option("rounds", options.rounds)
             .between(1, 100)
-            .help("N", "how often the points are drawn to the nearest places of the surface"),
+            .help("N",
+                  "how often the points are drawn to the nearest places of the surface; up to 20 times more "
+                  "where cells stay flat or the limit folds"),
         Option("refine", options.refine)
             .between(0, 3)
             .help("N", "divide cells into 27 up to N times, where the boundary is not met within --tolerance"),

@@ -46,10 +46,11 @@ struct Seeds {
     std::array<double, 4> least{};
 };
 
-/// det / |∂x/∂u| |∂x/∂v| |∂x/∂w|, −1 to 1; 0 where a derivative is 0.
+/// det / |∂x/∂u| |∂x/∂v| |∂x/∂w|, −1 to 1; 0 where a derivative is 0 or the product is no number.
 double shape_of(const Mat3& jacobian, double determinant) {
     const double lengths = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
-    return lengths > 0 ? determinant / lengths : 0;
+    const double shape = determinant / lengths;
+    return std::isfinite(shape) ? shape : 0;
 }
 
 /// determinants, shapes: at the places

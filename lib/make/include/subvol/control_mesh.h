@@ -74,7 +74,8 @@ struct ControlMesh {
 ///
 /// Cubes of a grid whose middles lie inside become cells, with a layer of cells around them, so that none has two sides at the
 /// boundary. Then the distortion of the cells' children is made as small as it can be, while the boundary of the limit is drawn
-/// to the surface, more and more; and points are moved where the limit folds still (`mend_folds`). Where the boundary is still
+/// to the surface, more and more. Cells that stay flat or fold count more then, and rather leave the surface; and points are
+/// moved where the limit folds still (`mend_folds`). Where the boundary is still
 /// too far away, cubes are divided and all is done again. Chains of sharp edges become creases, with a layer of cells on both
 /// sides. Where that cannot be, as in chains nearer to each other than a cell, edges become round, by a part of a cell.
 ///
@@ -83,8 +84,9 @@ struct ControlMesh {
 /// throws:  Error(InvalidInput) if the surface is not valid, if it is a sheet without volume, if no cube has its middle inside,
 ///          if it is more than 1e9 cubes away from the origin, if there would be too many cells, or if an option is out of
 ///          range; Error(Cancelled)
-/// cost:    some 1 to 5 ms and 10 kB a cell, more where folds are mended; parallel, the same bits for any number of threads
-/// source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for distortions
+/// cost:    some 1 to 5 ms and 10 kB a cell, up to ten times as long where cells stay flat or fold; parallel, the same bits for
+/// any number of threads source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for
+/// distortions
 [[nodiscard]] ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& options = {});
 
 }  // namespace subvol
