@@ -132,7 +132,8 @@ def control_mesh(
                  creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     cells:       cells along the longest side of the surface's box [2 to 1000]
     max_cells:   the most cells that may be made [1 to 1000000000]
-    rounds:      how often the points are drawn to the nearest places of the surface [1 to 100]
+    rounds:      how often the points are drawn to the nearest places of the surface; up to 20 times more where cells stay
+                 flat or the limit folds [1 to 100]
     refine:      divide cells into 27 up to N times, where the boundary is not met within tolerance [0 to 3]
     tolerance:   a distance that is near enough, as a part of a cell's side [0 to 10; with refine]
     sharp_angle: edges of the surface that are bent by more become creases of the mesh (180: none) [1 to 180]
