@@ -58,7 +58,7 @@ public:
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         CLI::Option* mend = add_option(app(), Option("mend", mend_).help("move control points until the limit does not fold"));
-        mend->needs(add_option(app(), Option("output", output_).also("o").help("FILE", "the mended mesh (.vtu, .vtkhdf)"))
+        mend->needs(add_option(app(), Option("output", output_).also("o").help("FILE", "the mended mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))
                         ->needs(mend));
         add_options(app(), options_of(mending_));
         for (const char* name : {"--boundary-move", "--rounds"}) app().get_option(name)->needs(mend);
@@ -76,7 +76,7 @@ public:
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.progress = report.progress();
         options.names = OptionNames::Flags;
-        if (mend_) check_output(output_, {".vtu", ".vtkhdf"});
+        if (mend_) check_output(output_, writable_mesh_extensions());
         report["input"] = input_;
         report.if_long("fewer --irregular-levels");
         if (series_) return check_series(options, report);

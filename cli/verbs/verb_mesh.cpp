@@ -48,7 +48,7 @@ public:
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
-        add_option(app(), Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf)"))->required();
+        add_option(app(), Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))->required();
         add_option(app(),
                    Option("iso", iso_)
                        .help("V", "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)"));
@@ -59,7 +59,7 @@ public:
     }
 
     int run(Report& report) override {
-        check_output(output_, {".vtu", ".vtkhdf"});
+        check_output(output_, writable_mesh_extensions());
         ControlMeshOptions options = options_;
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.names = OptionNames::Flags;

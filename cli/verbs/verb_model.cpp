@@ -25,7 +25,7 @@ public:
         add_input(app(), "NAME", name_, "the model's name");
         add_option(app(), Option("output", output_)
                               .also("o")
-                              .help("FILE", "the mesh to write (.vtu or .vtkhdf with its field, .mesh without)"));
+                              .help("FILE", "the mesh to write (.vtu, .vtkhdf or .msh with its field, .inp or .mesh without)"));
         add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
         add_option(app(), Option("list", list_).help("list the models"));
     }
@@ -48,7 +48,7 @@ private:
     void generate(Report& report) {
         if (name_.empty()) throw Error(ErrorCode::InvalidInput, "needs the name of a model", "model", "see --list");
         if (output_.empty()) throw Error(ErrorCode::InvalidInput, "needs a file to write", "model", "-o FILE");
-        check_output(output_, {".vtu", ".vtkhdf", ".mesh"});
+        check_output(output_, writable_mesh_extensions());
         const HexMesh mesh = report.timed("generate", [&] { return make_model(name_, resolution_); });
         report.merge(write_reported(output_, mesh, report.progress()));
         report["output"] = output_;

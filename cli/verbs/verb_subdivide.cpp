@@ -30,7 +30,7 @@ public:
         add_input(app(), "FILE", input_, input_help())->required();
         add_option(app(), Option("output", output_)
                               .also("o")
-                              .help("FILE", "the mesh to write (.vtu or .vtkhdf with its fields, .mesh without)"))
+                              .help("FILE", "the mesh to write (.vtu, .vtkhdf or .msh with its fields, .inp or .mesh without)"))
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
         add_option(
@@ -48,7 +48,7 @@ public:
             return 0;
         }
         const RefineOptions options = refine_.options(1, report.progress());
-        check_output(output_, {".vtu", ".vtkhdf", ".mesh"});
+        check_output(output_, writable_mesh_extensions());
         report.if_long("fewer --levels");
         Shells shells;
         report["input"] = input_;

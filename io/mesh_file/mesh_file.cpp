@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_format.h"
+#include "sharp_groups.h"
 #include "subvol/cell.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/number_text.h"
@@ -284,6 +286,18 @@ void order_symmetric(std::vector<double>& values, const std::array<std::size_t, 
         std::copy_n(tensor, given.size(), given.begin());
         for (std::size_t k = 0; k < given.size(); ++k) tensor[static_cast<std::ptrdiff_t>(k)] = given[places[k]];
     }
+}
+
+void warn_of_lost_fields(std::string_view extension, std::span<const Attribute> fields, std::vector<std::string>& warnings) {
+    std::vector<std::string> names;
+    for (const Attribute& field : fields) names.push_back(in_quotes(field.name));
+    if (!names.empty())
+        warnings.push_back(std::string(extension) + " cannot hold attributes: " + listed(names) + " not written");
+}
+
+void warn_of_lost_creases(std::string_view extension, const HexMesh& mesh, std::vector<std::string>& warnings) {
+    if (mesh.creases.empty() && mesh.sharp_faces.empty()) return;
+    warnings.push_back(sharp_counts(mesh) + " not written: " + std::string(extension) + " files do not have them");
 }
 
 }  // namespace subvol::detail

@@ -27,6 +27,12 @@ struct WrittenMesh {
     const MeshSets& sets;
 };
 
+/// Adds a warning that a writer leaves fields out, if there are any. extension: of the file
+void warn_of_lost_fields(std::string_view extension, std::span<const Attribute> fields, std::vector<std::string>& warnings);
+
+/// Adds a warning that a writer leaves the creases and sharp faces of a mesh out, if it has any.
+void warn_of_lost_creases(std::string_view extension, const HexMesh& mesh, std::vector<std::string>& warnings);
+
 /// A format of mesh files.
 struct MeshFormat {
     std::array<std::string_view, 4> extensions;  ///< in lower case, unused ones empty

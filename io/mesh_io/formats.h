@@ -111,6 +111,10 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const Wr
 /// Writes VTK XML, UnstructuredGrid, compressed, with shells and beams after the cells.
 std::vector<std::string> write_vtu(const std::filesystem::path& path, const WrittenMesh& written);
 
+/// Writes Gmsh's version 4.1 as text: patches and sets as physical groups. Fields of 1, 3, 6 and 9 channels are written, those
+/// of 6 as symmetric tensors of 9; a warning names the others, and counts creases.
+std::vector<std::string> write_gmsh(const std::filesystem::path& path, const WrittenMesh& written);
+
 /// Writes VTKHDF 1.0, compressed.
 std::vector<std::string> write_vtkhdf(const std::filesystem::path& path, const WrittenMesh& written);
 

@@ -27,7 +27,7 @@ constexpr std::array<MeshFormat, 6> kSolverFormats{{
      .part = read_foam_part,
      .folder = true,
      .finite_volumes = true},
-    {.extensions = {".inp"}, .name = "Abaqus", .read = read_inp, .blocks = true},
+    {.extensions = {".inp"}, .name = "Abaqus", .read = read_inp, .write = write_inp, .blocks = true},
 }};
 
 Contents contents_of_solvers(std::string_view begin) {

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "mesh_file.h"
+#include "mesh_format.h"
 #include "subvol/read_options.h"
 
 namespace subvol::detail {
@@ -50,6 +52,12 @@ class Hdf5File;
 
 /// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
 [[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
+
+/// Writes a deck of elements C3D8 with the sets and, for each patch, a surface and a set of nodes. Warnings name sets that have
+/// other names there, and fields; creases are counted.
+///
+/// throws: Error(InvalidInput) if there are more nodes or elements than a deck can number
+std::vector<std::string> write_inp(const std::filesystem::path& path, const WrittenMesh& written);
 
 /// What a deck has, for a file of its results.
 struct DeckContents {

@@ -383,21 +383,46 @@ py::dict corners_of_node_sets(const py::object& self) {
     return sets;
 }
 
-/// The patches and sets of a pickled mesh.
-MeshSets sets_from(const py::object& patches, const py::object& cells, const py::object& nodes, const HexMesh& mesh) {
-    MeshSets sets;
-    for_each_named(patches, "patches", [&](const std::string& name, const py::handle& rows) {
-        Patch& patch = sets.patches.emplace_back(Patch{.name = name, .sides = {}});
+/// Numbers of cells or points. What is no such number becomes kNone.
+std::vector<Index> indices_of(const py::handle& given, const std::string& name) {
+    const py::array_t<std::int64_t> all = numbers<std::int64_t>(given, name.c_str());
+    std::vector<Index> indices;
+    for (py::ssize_t i = 0; i < all.size(); ++i)
+        indices.push_back(std::in_range<Index>(all.data()[i]) ? static_cast<Index>(all.data()[i]) : kNone);
+    return indices;
+}
+
+/// Sides (n,2) as cells and their sides, or points (n,), for the sides of the boundary between them.
+std::vector<Patch> patches_from(const py::object& given, const HexMesh& mesh) {
+    std::vector<Patch> patches;
+    for_each_named(given, "patches", [&](const std::string& name, const py::handle& rows) {
+        const Error no_array(ErrorCode::InvalidInput, "cannot be made an array", name,
+                             "an array of cells and sides, or of points");
+        if (const py::array array = array_from(rows, no_array); array.ndim() == 1) {
+            const std::vector<Index> points = array.size() > 0 ? indices_of(rows, name) : std::vector<Index>();
+            patches.push_back(boundary_of(mesh, node_set_of(mesh, name, points)));
+            return;
+        }
+        Patch& patch = patches.emplace_back(Patch{.name = name, .sides = {}});
         constexpr Index kNoSide = 6;
         for (const auto& [cell, side] : index_rows<2>(rows, std::max<std::size_t>(mesh.cells.size(), kNoSide), name))
             patch.sides.push_back({cell, static_cast<std::uint8_t>(std::min(side, kNoSide))});
     });
-    for_each_named(cells, "sets", [&](const std::string& name, const py::handle& numbers_of_cells) {
-        CellSet& set = sets.sets.emplace_back(CellSet{.name = name, .cells = {}});
-        const py::array_t<std::int64_t> given = numbers<std::int64_t>(numbers_of_cells, name);
-        for (py::ssize_t i = 0; i < given.size(); ++i)
-            set.cells.push_back(std::in_range<Index>(given.at(i)) ? static_cast<Index>(given.at(i)) : kNone);
+    return patches;
+}
+
+std::vector<CellSet> cell_sets_from(const py::object& given) {
+    std::vector<CellSet> sets;
+    for_each_named(given, "sets", [&](const std::string& name, const py::handle& cells) {
+        sets.push_back({.name = name, .cells = indices_of(cells, name)});
+        std::ranges::sort(sets.back().cells);
     });
+    return sets;
+}
+
+/// The patches and sets of a pickled mesh.
+MeshSets sets_from(const py::object& patches, const py::object& cells, const py::object& nodes, const HexMesh& mesh) {
+    MeshSets sets{patches_from(patches, mesh), cell_sets_from(cells)};
     for_each_named(nodes, "sets of nodes", [&](const std::string& name, const py::handle& rows) {
         NodeSet& set = sets.nodes.emplace_back(NodeSet{.name = name, .cells = {}});
         constexpr Index kAllCorners = 255;
@@ -406,6 +431,36 @@ MeshSets sets_from(const py::object& patches, const py::object& cells, const py:
     });
     validate(sets, mesh);
     return sets;
+}
+
+void check_on_boundary(const HexMesh& mesh, const std::vector<Patch>& patches) {
+    const Topology topology = build_topology(mesh);
+    for (const Patch& patch : patches) {
+        for (const CellSide& side : patch.sides) {
+            if (topology.face_on_hull(topology.cell_faces[side.cell][side.side])) continue;
+            throw Error(ErrorCode::InvalidInput,
+                        "side " + std::to_string(side.side) + " of cell " + std::to_string(side.cell) + " lies inside the mesh",
+                        "patches['" + patch.name + "']", "sides on its boundary");
+        }
+    }
+}
+
+/// The mesh with other patches and sets; those that are None stay.
+py::object with_other_sets(const py::object& self, const py::object& patches, const py::object& cells,
+                           const py::object& nodes) {
+    const auto& mesh = self.cast<const HexMesh&>();
+    MeshSets sets = sets_of(self);
+    if (!patches.is_none()) sets.patches = patches_from(patches, mesh);
+    if (!cells.is_none()) sets.sets = cell_sets_from(cells);
+    if (!nodes.is_none()) {
+        sets.nodes.clear();
+        for_each_named(nodes, "node_sets", [&](const std::string& name, const py::handle& points) {
+            sets.nodes.push_back(node_set_of(mesh, name, indices_of(points, name)));
+        });
+    }
+    validate(sets, mesh);
+    if (!patches.is_none()) check_on_boundary(mesh, sets.patches);
+    return with_sets(mesh, std::move(sets));
 }
 
 }  // namespace
@@ -432,6 +487,10 @@ void bind_mesh(py::module_& module) {
     };
     const char* const no_points =
         "the points and cells of a mesh cannot be changed; HexMesh(points, cells, mesh.fields) is a mesh with others";
+    const char* const no_sets =
+        "the patches and sets of a mesh cannot be changed; mesh.with_sets(patches={...}, sets={...}, node_sets={...}) is a "
+        "mesh "
+        "with others";
     py::class_<MeshSets>(module, "MeshSets");
     py::class_<HexMesh>(module, "HexMesh", py::dynamic_attr(),
                         "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
@@ -454,9 +513,9 @@ void bind_mesh(py::module_& module) {
         .def_property("fields", &fields_of,
                       refuse("the fields of a mesh cannot be changed; mesh.with_fields({...}) is a mesh with others"))
         .def_property_readonly("cell_fields", &cell_fields_of)
-        .def_property_readonly("patches", &patches_of)
-        .def_property_readonly("sets", &cell_sets_of)
-        .def_property_readonly("node_sets", &node_sets_of)
+        .def_property("patches", &patches_of, refuse(no_sets))
+        .def_property("sets", &cell_sets_of, refuse(no_sets))
+        .def_property("node_sets", &node_sets_of, refuse(no_sets))
         .def_property_readonly("bounds", [](const HexMesh& mesh) { return read_only(as_array(bounds(mesh))); })
         .def("report", &figures_of)
         .def("boundary",
@@ -476,6 +535,8 @@ void bind_mesh(py::module_& module) {
             },
             py::arg("angle_deg"))
         .def("with_fields", &with_fields, py::arg("fields"))
+        .def("with_sets", &with_other_sets, py::kw_only(), py::arg("patches") = py::none(), py::arg("sets") = py::none(),
+             py::arg("node_sets") = py::none())
         .def(
             "same_cells", [](const HexMesh& mesh, const HexMesh& other) { return same_cells(mesh, other); }, py::arg("other"))
         .def("__repr__", &mesh_text)

@@ -39,7 +39,7 @@ def read_mesh(path: Path, *, clamp: Optional[str] = None, **options: Any) -> Hex
 
 
 def write_mesh(mesh: HexMesh, path: Path) -> None:
-    """Writes `.vtu` or `.vtkhdf` (with all fields, patches and sets) or `.mesh` (geometry only). The file appears whole under its name or not at all.
+    """Writes `.vtu` or `.vtkhdf` (with all fields, patches and sets), `.msh` of Gmsh (with most of them), `.inp` of Abaqus and CalculiX (with patches and sets) or `.mesh` (geometry only). The file appears whole under its name or not at all.
 
     Raises InvalidInput for another extension, FileError if the file cannot be written.
     """

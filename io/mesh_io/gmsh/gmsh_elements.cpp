@@ -183,6 +183,7 @@ void GmshCells::take_nodes(const GmshElement& element, std::size_t number, Numbe
     if (known && element.nodes == 2) {
         found_.lines.corners.push_back({nodes[0], nodes[1]});
         found_.lines.numbers.push_back(static_cast<Index>(number));
+        if (!groups_.empty()) grouped_.push_back(static_cast<Index>(number));
     } else if (!known || element.nodes > 1) {
         leave_out(element, 1);
     }
@@ -203,6 +204,7 @@ void GmshCells::take_surface(const GmshElement& element, std::size_t number, Num
     if (!known || element.nodes != 4 || corners != 4) return leave_out(element, 1);
     found_.quads.corners.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
     found_.quads.numbers.push_back(static_cast<Index>(number));
+    grouped_.push_back(static_cast<Index>(number));
 }
 
 template <std::size_t N>
@@ -231,9 +233,15 @@ void GmshCells::list_left_out(std::string_view file) {
         found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                   " more nodes than corners: only the corners are used");
     }
-    const auto [quads, lines] = drop_parts_of_cells(found_, options_.shells_alone);
-    leave_out(kGmshElements.at(3), quads);
-    leave_out(kGmshElements.at(1), lines);
+    // Faces and edges of cells that are in groups are patches and sets of nodes.
+    const auto in_no_group = [&](const std::vector<Index>& numbers) {
+        const auto is_grouped = [&](Index n) { return std::ranges::binary_search(grouped_, n); };
+        return numbers.size() - static_cast<std::size_t>(std::ranges::count_if(numbers, is_grouped));
+    };
+    const std::size_t quads = in_no_group(found_.quads.numbers), lines = in_no_group(found_.lines.numbers);
+    drop_parts_of_cells(found_, options_.shells_alone);
+    leave_out(kGmshElements.at(3), quads - in_no_group(found_.quads.numbers));
+    leave_out(kGmshElements.at(1), lines - in_no_group(found_.lines.numbers));
     std::vector<IgnoredPart> types;
     for (const auto& [one, rest] : left_out_) types.push_back({"element type", std::string(one), rest.first});
     add_left_out_warning(found_, types, file, [&](const IgnoredPart& type) {

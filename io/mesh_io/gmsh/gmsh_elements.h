@@ -221,6 +221,7 @@ private:
     std::vector<std::string> groups_;
     std::size_t curved_ = 0;
     std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
+    std::vector<Index> grouped_;  // numbers of quads and lines that are in groups, ascending
 };
 
 }  // namespace subvol::detail

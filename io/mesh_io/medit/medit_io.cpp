@@ -297,9 +297,7 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const Wr
     out.commit();
 
     std::vector<std::string> warnings;
-    std::string names;
-    for (const auto& attribute : mesh.attributes) names += (names.empty() ? "\"" : ", \"") + attribute.name + "\"";
-    if (!names.empty()) warnings.push_back(".mesh cannot hold attributes: " + names + " not written");
+    warn_of_lost_fields(".mesh", mesh.attributes, warnings);
     if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
         warnings.push_back(sharp_counts(mesh) + " written as groups, which only --sharp 1 reads again");
     }

@@ -27,29 +27,6 @@ namespace {
 
 constexpr EntityNames kAbaqusNames{"node", "element", 1};
 
-// The nodes of the sides of each shape, as Abaqus and CalculiX number them.
-using CornersOfSides = std::vector<std::vector<std::size_t>>;
-const CornersOfSides kInpHexSides{{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
-const CornersOfSides kInpTetSides{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-const CornersOfSides kInpPrismSides{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
-const CornersOfSides kInpPyramidSides{{0, 1, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
-
-const CornersOfSides& inp_sides(InpShape shape) {
-    static const CornersOfSides none;
-    switch (shape) {
-        case InpShape::Hex:
-            return kInpHexSides;
-        case InpShape::Tet:
-            return kInpTetSides;
-        case InpShape::Prism:
-            return kInpPrismSides;
-        case InpShape::Pyramid:
-            return kInpPyramidSides;
-        default:
-            return none;
-    }
-}
-
 // Lines of a small deck may name any number of sides, each the members of a set.
 constexpr std::size_t kMostSides = std::size_t{1} << 22, kSidesOfElement = 64;
 

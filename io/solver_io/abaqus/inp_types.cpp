@@ -40,6 +40,11 @@ InpShape solid_of(std::size_t nodes, bool fluid) {
     return (nodes == 4 && !fluid) || nodes == 10 ? InpShape::Tet : InpShape::Other;
 }
 
+const CornersOfSides kInpHexSides{{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+const CornersOfSides kInpTetSides{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+const CornersOfSides kInpPrismSides{{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+const CornersOfSides kInpPyramidSides{{0, 1, 2, 3}, {0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}};
+
 }  // namespace
 
 InpType inp_type(std::string_view name) {
@@ -56,6 +61,22 @@ InpType inp_type(std::string_view name) {
     const bool solid = std::ranges::find(kNoSolids, family) == kNoSolids.end();
     const InpShape shape = solid ? solid_of(nodes, family == "F") : InpShape::Other;
     return made(shape, shape == InpShape::Other ? 0 : nodes);
+}
+
+const CornersOfSides& inp_sides(InpShape shape) {
+    static const CornersOfSides none;
+    switch (shape) {
+        case InpShape::Hex:
+            return kInpHexSides;
+        case InpShape::Tet:
+            return kInpTetSides;
+        case InpShape::Prism:
+            return kInpPrismSides;
+        case InpShape::Pyramid:
+            return kInpPyramidSides;
+        default:
+            return none;
+    }
 }
 
 }  // namespace subvol::detail

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace subvol::detail {
 
@@ -18,6 +19,10 @@ struct InpType {
 
 /// What the name of a type says of its shape, whatever its elements compute.
 [[nodiscard]] InpType inp_type(std::string_view name);
+
+/// The corners of each side of a shape, as Abaqus and CalculiX number them; none for shells.
+using CornersOfSides = std::vector<std::vector<std::size_t>>;
+[[nodiscard]] const CornersOfSides& inp_sides(InpShape shape);
 
 [[nodiscard]] constexpr bool is_shell(InpShape shape) {
     return shape == InpShape::Quad || shape == InpShape::Line;

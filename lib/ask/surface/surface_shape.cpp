@@ -31,13 +31,11 @@ void measure_surface(const Surface& surface, SurfaceReport& report) {
     std::vector<Index> parents(surface.points.size());
     std::iota(parents.begin(), parents.end(), Index{0});
     std::vector<std::uint8_t> used(surface.points.size(), 0);
-    const Vec3 origin = surface.points.empty() ? Vec3(0.0) : surface.points.front();
-    double area = 0, volume = 0, least = 180;
+    double area = 0, least = 180;
     std::size_t small = 0;
     for (const auto& t : surface.triangles) {
-        const Vec3 a = surface.points[t[0]] - origin, b = surface.points[t[1]] - origin, c = surface.points[t[2]] - origin;
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
         area += 0.5 * glm::length(glm::cross(b - a, c - a));
-        volume += glm::dot(a, glm::cross(b, c)) / 6;
         const double angle = least_angle_deg(a, b, c);
         least = std::min(least, angle);
         small += angle < 10 ? 1 : 0;
@@ -65,7 +63,7 @@ void measure_surface(const Surface& surface, SurfaceReport& report) {
         components += root_of(parents, p) == p ? 1 : 0;
     }
     report.area = area;
-    report.volume = volume;
+    report.volume = enclosed_volume(surface);
     report.watertight = watertight;
     report.euler = static_cast<long>(points) - static_cast<long>(edge_count) + static_cast<long>(surface.triangles.size());
     report.components = components;

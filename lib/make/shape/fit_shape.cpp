@@ -95,15 +95,6 @@ ShapeError error_of(const Surface& boundary, const Surface& surface, const Progr
     return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
 }
 
-double enclosed_volume(const Surface& closed) {
-    double volume = 0;
-    for (const auto& [a, b, c] : closed.triangles) {
-        const Vec3& x = closed.points[closed.triangles[0][0]];  // near, so that no digits are lost
-        volume += glm::dot(closed.points[a] - x, glm::cross(closed.points[b] - x, closed.points[c] - x)) / 6;
-    }
-    return volume;
-}
-
 }  // namespace
 
 namespace detail {

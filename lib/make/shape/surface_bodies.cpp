@@ -48,14 +48,6 @@ Vec3 area_of(const Surface& surface, Index triangle) {
     return 0.5 * glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
 }
 
-Box box_about(const Surface& surface) {
-    Box box;
-    for (const auto& t : surface.triangles) {
-        for (const Index p : t) box.add(surface.points[p]);
-    }
-    return box;
-}
-
 Vec3 middle_of(const Surface& surface, std::size_t triangle) {
     const auto& [a, b, c] = surface.triangles[triangle];
     return (surface.points[a] + surface.points[b] + surface.points[c]) / 3.0;
@@ -87,7 +79,7 @@ void keep_triangles(Surface& surface, const Keep& keep) {
 
 double same_place(const Surface& surface) {
     constexpr double kSame = 1e-7;  // of the box
-    return kSame * box_about(surface).diagonal();
+    return kSame * bounds(surface).diagonal();
 }
 
 OpenEdges open_edges(const Surface& surface) {
@@ -247,7 +239,6 @@ void SurfaceBodies::make_walls() {
         wall.surface.triangles.push_back(surface_.triangles[t]);
     }
     if (!rest.surface.triangles.empty()) walls_.push_back(std::move(rest));
-    const Vec3 origin = box_about(surface_).center();
     for (Wall& wall : walls_) {
         Surface& own = wall.surface;
         std::vector<Index> points;
@@ -262,8 +253,8 @@ void SurfaceBodies::make_walls() {
             const Vec3 area = area_of(own, t);
             wall.area += area;
             wall.size += glm::length(area);
-            wall.volume += glm::dot(area, own.points[own.triangles[t][0]] - origin) / 3;
         }
+        wall.volume = enclosed_volume(own);
     }
     if (walls_.size() > 1 && !walls_.back().closed && glm::length(walls_.back().area) > kFlat * walls_.back().size) {
         report_.sheets += walls_.back().surface.triangles.size();

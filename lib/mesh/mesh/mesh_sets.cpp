@@ -156,6 +156,26 @@ std::vector<Index> points_of(const HexMesh& mesh, const NodeSet& set) {
     return points;
 }
 
+NodeSet node_set_of(const HexMesh& mesh, std::string name, std::span<const Index> points) {
+    std::vector<std::uint8_t> chosen(mesh.points.size(), 0);
+    for (const Index p : points) {
+        if (p >= chosen.size()) {
+            throw Error(ErrorCode::InvalidInput, "set of nodes " + detail::in_quotes(name) + " has point " + std::to_string(p),
+                        {}, "less than " + std::to_string(chosen.size()));
+        }
+        chosen[p] = 1;
+    }
+    NodeSet set{std::move(name), {}};
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        std::uint8_t corners = 0;
+        for (std::size_t k = 0; k < 8; ++k) {
+            if (chosen[mesh.cells[c][k]] != 0) corners |= static_cast<std::uint8_t>(1U << k);
+        }
+        if (corners != 0) set.cells.push_back({c, corners});
+    }
+    return set;
+}
+
 Patch boundary_of(const HexMesh& mesh, const NodeSet& set) {
     // All cells at these points are in the set: a side without another cell of them beside it is on the boundary.
     CellSet cells{set.name, {}};

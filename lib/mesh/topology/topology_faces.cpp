@@ -151,6 +151,26 @@ Surface boundary_surface_where(const HexMesh& mesh, const std::function<bool(con
 
 }  // namespace subvol::detail
 
-subvol::Surface subvol::boundary_surface(const HexMesh& mesh) {
+namespace subvol {
+
+Box bounds(const Surface& surface) {
+    Box box;
+    for (const auto& t : surface.triangles) {
+        for (const Index p : t) box.add(surface.points[p]);
+    }
+    return box;
+}
+
+double enclosed_volume(const Surface& closed) {
+    const Vec3 x = closed.points.empty() ? Vec3(0.0) : closed.points.front();  // near, so that no digits are lost
+    double volume = 0;
+    for (const auto& [a, b, c] : closed.triangles)
+        volume += glm::dot(closed.points[a] - x, glm::cross(closed.points[b] - x, closed.points[c] - x)) / 6;
+    return volume;
+}
+
+Surface boundary_surface(const HexMesh& mesh) {
     return detail::boundary_surface_where(mesh, [](const auto&) { return true; });
 }
+
+}  // namespace subvol

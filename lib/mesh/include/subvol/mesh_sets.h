@@ -78,6 +78,11 @@ void validate(const MeshSets& sets, const HexMesh& mesh);
 /// The points of a set of nodes, ascending.
 [[nodiscard]] std::vector<Index> points_of(const HexMesh& mesh, const NodeSet& set);
 
+/// The points as a set of nodes, by all cells that have one at a corner. Points that no cell has are left out.
+///
+/// throws: Error(InvalidInput) if a point does not exist
+[[nodiscard]] NodeSet node_set_of(const HexMesh& mesh, std::string name, std::span<const Index> points);
+
 /// The sides of the boundary all of whose corners are in a set of nodes, by cell and side, with the set's name.
 [[nodiscard]] Patch boundary_of(const HexMesh& mesh, const NodeSet& set);
 

@@ -14,6 +14,13 @@ struct Surface {
     std::vector<std::array<Index, 3>> triangles;
 };
 
+/// The box of the points that triangles use.
+[[nodiscard]] Box bounds(const Surface& surface);
+
+/// The volume that a closed surface encloses, with the sign of its orientation: positive if its triangles are counter-clockwise
+/// seen from outside. Of an open one it depends on the order of the points.
+[[nodiscard]] double enclosed_volume(const Surface& closed);
+
 /// The boundary of a hexahedral mesh. Each quad gives two triangles, split along the diagonal from its smallest point id as in
 /// `split_cell`, so that the surface is exactly the boundary of the tetrahedra.
 [[nodiscard]] Surface boundary_surface(const HexMesh& mesh);

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes for solvers: what Gmsh, meshio and CalculiX read of the files, and patches and sets that are given."""
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+import subvol
+
+
+def bar():
+    """A bar of 4 x 2 x 2 cells from 0 to 4, with points inside that are moved, two patches and a set of each kind."""
+    points = np.stack(np.meshgrid(np.arange(5.0), np.arange(3.0), np.arange(3.0), indexing="ij"), -1).reshape(-1, 3)
+    number = np.arange(45).reshape(5, 3, 3)
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = np.stack([number[i:4 + i, j:2 + j, k:2 + k].ravel() for i, j, k in corners], 1)
+    inner = ((points[:, 1:] == 1).all(1)) & (points[:, 0] > 0) & (points[:, 0] < 4)
+    points[inner] += [[.2, -.1, .15], [-.1, .2, .1], [.1, .1, -.2]]
+    mesh = subvol.HexMesh(points, cells, creases=np.zeros((0, 2), int))
+    return mesh.with_sets(patches={"fixed": np.nonzero(points[:, 0] == 0)[0], "pulled": np.nonzero(points[:, 0] == 4)[0]},
+                          sets={"first": np.arange(4)}, node_sets={"middle": np.nonzero(inner)[0]})
+
+
+def test_patches_and_sets_are_given():
+    mesh = bar()
+    assert sorted(mesh.patches) == ["fixed", "pulled"] and list(mesh.sets["first"]) == [0, 1, 2, 3] and len(mesh.node_sets["middle"]) == 3
+    for name, x in (("fixed", 0), ("pulled", 4)):
+        sides = mesh.patches[name]
+        corners = [(0, 4, 7, 3), (1, 2, 6, 5)]
+        assert len(sides) == 4 and all((mesh.points[mesh.cells[c][list(corners[s])], 0] == x).all() for c, s in sides)
+    # Those that are not named stay, and a file keeps all.
+    other = mesh.with_sets(sets={"second": [5, 4]}, patches={"one": [(0, 0)]})
+    assert list(other.sets) == ["second"] and list(other.sets["second"]) == [4, 5] and list(other.node_sets) == ["middle"]
+    assert other.patches["one"].tolist() == [[0, 0]]
+    assert mesh.with_sets(patches={}).patches == {} and len(mesh.with_sets(patches={}).sets) == 1
+    for given, sentence in (({"patches": {"x": [(0, 1)]}}, "side 1 of cell 0 lies inside the mesh"), ({"patches": {"x": [(0, 6)]}}, "side 6"),
+                            ({"patches": {"x": [(99, 0)]}}, "99"), ({"sets": {"x": [16]}}, "cell 16"), ({"sets": {"x": [-1]}}, "x"),
+                            ({"sets": {"x": [1, 1]}}, "more than once"), ({"node_sets": {"x": [45]}}, "point 45"),
+                            ({"patches": {"x": [45]}}, "point 45")):
+        with pytest.raises(subvol.InvalidInput, match=sentence):
+            mesh.with_sets(**given)
+    with pytest.raises(AttributeError, match="with_sets"):
+        mesh.sets = {}
+
+
+def test_meshio_reads_what_is_written(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    mesh = bar().with_fields({"T": np.arange(45.0), "U": np.arange(135.0).reshape(45, 3)})
+    subvol.write_mesh(mesh, tmp_path / "a.msh")
+    theirs = meshio.read(tmp_path / "a.msh")
+    assert np.array_equal(theirs.points, mesh.points)
+    assert np.array_equal(theirs.point_data["T"], mesh.fields["T"]) and np.array_equal(theirs.point_data["U"], mesh.fields["U"])
+    assert {name: tuple(int(v) for v in value)[1] for name, value in theirs.field_data.items()} == {"middle": 0, "fixed": 2, "pulled": 2, "first": 3, "cells": 3}
+    assert sum(len(block.data) for block in theirs.cells if block.type == "hexahedron") == 16
+    first = np.concatenate([block.data[of.astype(int)] for block, of in zip(theirs.cells, theirs.cell_sets["first"]) if len(of)])
+    assert sorted(first.tolist()) == sorted(mesh.cells[:4].tolist())
+    quads = np.concatenate([block.data[of.astype(int)] for block, of in zip(theirs.cells, theirs.cell_sets["pulled"]) if len(of)])
+    assert (theirs.points[quads][..., 0] == 4).all()
+    a, b, _, d = theirs.points[quads].transpose(1, 0, 2)
+    assert (np.cross(b - a, d - a) == [1, 0, 0]).all()  # outwards
+    with pytest.warns(UserWarning, match='"T", "U" not written'):
+        subvol.write_mesh(mesh, tmp_path / "a.inp")
+    theirs = meshio.read(tmp_path / "a.inp")
+    assert np.array_equal(theirs.points, mesh.points) and np.array_equal(theirs.cells_dict["hexahedron"], mesh.cells)
+    assert sorted(theirs.point_sets) == ["fixed", "middle", "pulled"]
+
+
+def test_gmsh_reads_what_is_written(tmp_path):
+    gmsh = shutil.which("gmsh")
+    if gmsh is None:
+        pytest.skip("Debian's gmsh is not installed")
+    subvol.write_mesh(bar().with_fields({"T": np.arange(45.0)}), tmp_path / "a.msh")
+    run = subprocess.run([gmsh, "-save", "-format", "msh22", "-o", "b.msh", "a.msh"], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0 and "Error" not in run.stdout + run.stderr and "Warning" not in run.stdout + run.stderr, run.stdout + run.stderr
+    theirs = subvol.read_mesh(tmp_path / "b.msh")
+    assert len(theirs.cells) == 16 and {name: len(sides) for name, sides in theirs.patches.items()} == {"fixed": 4, "pulled": 4}
+    assert len(theirs.sets["first"]) == 4 and len(theirs.node_sets["middle"]) == 3
+
+
+STEP = """*INCLUDE, INPUT={mesh}
+*MATERIAL, NAME=M
+*ELASTIC
+210000., 0.
+*SOLID SECTION, ELSET=Eall, MATERIAL=M
+*STEP
+*STATIC
+*BOUNDARY
+fixed, 1, 3
+*DSLOAD
+pulled, P, -100.
+*NODE FILE
+U
+*EL FILE
+S
+*END STEP
+"""
+
+
+def test_calculix_computes_with_what_is_written(tmp_path):
+    """Under a pull of 100, without lateral strain, the stress is 100 everywhere and the displacement is linear, whatever the cells."""
+    ccx = shutil.which("ccx")
+    if ccx is None:
+        pytest.skip("Debian's calculix-ccx is not installed")
+    mesh = bar()
+    subvol.write_mesh(mesh, tmp_path / "mesh.inp")
+    (tmp_path / "job.inp").write_text(STEP.format(mesh="mesh.inp"))
+    run = subprocess.run([ccx, "job"], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0 and "*ERROR" not in run.stdout, run.stdout[-2000:]
+    result = subvol.read_mesh(tmp_path / "job.frd")
+    assert np.abs(result.fields["DISP"][:, 0] - mesh.points[:, 0] * 100 / 210000).max() < 1e-8
+    stress = result.fields["STRESS"]
+    assert np.abs(stress[:, 0] - 100).max() < 1e-2 and np.abs(stress[:, 1:]).max() < 1e-3
+
+
+@pytest.mark.parametrize("ending", ["inp", "msh"])
+def test_the_command_writes_them(command, tmp_path, ending):
+    subvol.write_mesh(bar(), tmp_path / "bar.vtu")
+    command("subdivide", tmp_path / "bar.vtu", "-o", tmp_path / f"fine.{ending}", "--levels", 1, "--scheme", "linear")
+    fine = subvol.read_mesh(tmp_path / f"fine.{ending}")
+    assert len(fine.cells) == 128 and len(fine.patches["pulled"]) == 16 and len(fine.sets["first"]) == 32
+    assert (fine.points[fine.node_sets["middle"], 1] > 0).all()
