@@ -43,12 +43,16 @@ public:
                "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
                "mended, "
                "sharp {curves, missed: chains of sharp edges, and those without creases; length_world, missed_length_world, "
-               "creases, rms, max: of the creases from the chains}, parts, added, refined, divided, side_world, "
+               "creases, rms, max: of the creases from the chains}, thin {part, thickness_world, at: of the surface about "
+               "parts thinner "
+               "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
                "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
-        add_option(app(), Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))->required();
+        add_option(app(),
+                   Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))
+            ->required();
         add_option(app(),
                    Option("iso", iso_)
                        .help("V", "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)"));

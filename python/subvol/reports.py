@@ -249,6 +249,14 @@ class SurfaceBodies(TypedDict):
     many_edges: int
 
 
+class ThinParts(TypedDict):
+    """Parts of a body thinner than 1.5 cells, which `control_mesh` looks for if its mesh is not as it should be."""
+
+    part: float
+    thickness_world: float
+    at: list[float]
+
+
 class _Enclosed(TypedDict, total=False):
     enclosed_world: float  # if the surface has no holes and no parts cross
 
@@ -262,6 +270,7 @@ class ControlMeshReport(ShapeReport, _Enclosed):
     divided: int
     side_world: float
     sharp: SharpCurves
+    thin: ThinParts
     min_scaled_jacobian: float
     surface: SurfaceBodies
 

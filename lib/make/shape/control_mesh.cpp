@@ -17,6 +17,7 @@
 #include "subvol/control_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -29,6 +30,7 @@
 #include "subvol/option.h"
 #include "surface_bodies.h"
 #include "surface_filler.h"
+#include "thin_parts.h"
 
 namespace subvol {
 
@@ -37,6 +39,7 @@ using namespace detail;
 namespace {
 
 constexpr double kStraight = 180;
+constexpr double kMuch = 0.02;  // of the volume
 
 /// What is odd about a surface, and what was done about it.
 void warn_of(const EnclosureReport& found, std::vector<std::string>& warnings) {
@@ -60,11 +63,27 @@ void warn_of(const EnclosureReport& found, std::vector<std::string>& warnings) {
 void warn_of_volume(ControlMeshReport& report, OptionNames names) {
     if (!(report.enclosed_world > 0.0)) return;
     const double part = report.shape.volume_world / *report.enclosed_world - 1;
-    constexpr double kMuch = 0.02;
     if (std::abs(part) < kMuch) return;
     report.shape.warnings.push_back("the limit encloses " + number_text(100 * std::abs(part), 2) + " % " +
                                     (part < 0 ? "less" : "more") + " than the surface: more " + option_name("cells", names) +
                                     " or " + option_name("refine", names) + " come nearer");
+}
+
+/// Where something is wrong: whether the body is too thin for its cells, and how many would do.
+void warn_of_thin_parts(const SurfaceBodies& bodies, const ControlMeshOptions& options, ControlMeshReport& report) {
+    constexpr double kThin = 1.5, kAcross = 2, kLittle = 0.01, kMostCells = 1000;
+    const bool is_off = report.enclosed_world && std::abs(report.shape.volume_world / *report.enclosed_world - 1) >= kMuch;
+    const bool is_missed = report.sharp.missed > 0 || report.shape.after.missed_max > report.side_world;
+    if (report.shape.is_sound() && !is_off && !is_missed) return;
+    report.thin = thin_parts(bodies, kThin * report.side_world);
+    if (report.thin.part < kLittle) return;
+    const double cells = std::ceil(kAcross * report.side_world * options.cells / report.thin.thickness_world);
+    report.shape.warnings.push_back(
+        number_text(100 * report.thin.part, 2) + " % of the surface bounds parts that are thinner than " + number_text(kThin) +
+        " cells, such as " + number_text(report.thin.thickness_world, 3) + " at " + number_text(report.thin.at.x, 3) + ", " +
+        number_text(report.thin.at.y, 3) + ", " + number_text(report.thin.at.z, 3) + ": " +
+        (cells > kMostCells ? "no number of cells along the longest side has two across them"
+                            : option_name("cells", options.names) + " " + number_text(cells) + " has two across them"));
 }
 
 std::size_t parts_of(const HexMesh& mesh) {
@@ -119,6 +138,10 @@ Facts facts_of(const ControlMeshReport& report) {
     sharp["rms"] = report.sharp.rms;
     sharp["max"] = report.sharp.max;
     facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
+    Facts& thin = facts.group("thin");
+    thin["part"] = report.thin.part;
+    thin["thickness_world"] = report.thin.thickness_world;
+    thin["at"] = std::array{report.thin.at.x, report.thin.at.y, report.thin.at.z};
     Facts& surface = facts.group("surface");
     surface["walls"] = report.surface.walls;
     surface["united"] = report.surface.united;
@@ -199,6 +222,7 @@ ControlMesh control_mesh_of(const Surface& all, const ControlMeshOptions& given)
     report.min_scaled_jacobian = measure_cells(mesh).min_scaled_jacobian;
     report.enclosed_world = bodies.volume();
     warn_of_volume(report, options.names);
+    warn_of_thin_parts(bodies, options, report);
     return {std::move(mesh), std::move(report)};
 }
 

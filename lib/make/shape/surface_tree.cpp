@@ -154,6 +154,27 @@ bool SurfaceTree::pierced_by(const Vec3& a, const Vec3& b, double touching) cons
     return pierced;
 }
 
+std::optional<double> SurfaceTree::way_to(const Vec3& a, const Vec3& b) const {
+    Box segment;
+    segment.add(a);
+    segment.add(b);
+    std::optional<double> first;
+    for (const Index t : triangles_near(segment)) {
+        const auto x = corners(t);
+        const Vec3 n = glm::cross(x[1] - x[0], x[2] - x[0]), way = b - a;
+        const double across = glm::dot(n, way);
+        if (across == 0) continue;
+        const double at = glm::dot(n, x[0] - a) / across;
+        if (!(at >= 0 && at <= (first ? *first : 1))) continue;
+        const Vec3 place = a + at * way;
+        const bool inside = glm::dot(n, glm::cross(x[1] - x[0], place - x[0])) >= 0 &&
+                            glm::dot(n, glm::cross(x[2] - x[1], place - x[1])) >= 0 &&
+                            glm::dot(n, glm::cross(x[0] - x[2], place - x[2])) >= 0;
+        if (inside) first = at;
+    }
+    return first;
+}
+
 std::vector<Index> SurfaceTree::triangles_near(const Box& box) const {
     std::vector<Index> near;
     tree_->visit_leaves([&](const Box& part) { return meet(part, box); },

@@ -42,6 +42,9 @@ public:
     /// Whether a segment passes through a triangle: its ends lie on both sides, farther from it than `touching`.
     [[nodiscard]] bool pierced_by(const Vec3& a, const Vec3& b, double touching) const;
 
+    /// The part of the way from a to b at which it meets the first triangle; nothing if it meets none.
+    [[nodiscard]] std::optional<double> way_to(const Vec3& a, const Vec3& b) const;
+
     [[nodiscard]] const Box& box() const { return tree_->box(0); }
 
     /// The triangles that may meet a box.

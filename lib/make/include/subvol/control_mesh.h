@@ -47,10 +47,18 @@ struct EnclosureReport {
     std::size_t many_edges = 0;      ///< edges of more than two triangles
 };
 
+/// Parts of a body that are thinner than 1.5 sides of a cell.
+struct ThinParts {
+    double part = 0;             ///< of the surface's area that bounds them
+    double thickness_world = 0;  ///< nine tenths of this area bound parts as thick as this or thicker
+    Vec3 at{0.0};                ///< where they are about so thick
+};
+
 struct ControlMeshReport {
     FitShapeReport shape;  ///< how far the limit's boundary is from the surface; `before`: as cubes with a layer around them
     SharpEdgeReport sharp;
     EnclosureReport surface;
+    ThinParts thin;           ///< looked for only if the mesh is not as it should be
     std::size_t parts = 0;    ///< parts of the mesh that are not joined
     std::size_t added = 0;    ///< cubes that were needed to make the boundary of the cubes a surface
     int refined = 0;          ///< how often cubes were divided
