@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// What the elements of a Gmsh file become: cells by their shape, sheets and curves, sharp faces and edges of the groups that
+// the user names, and patches, sets of cells and sets of nodes of all groups. Elements that are none of these are counted for
+// a warning, as are faces and edges of cells in no group.
 #include "gmsh_elements.h"
 
 #include <array>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writes Gmsh's version 4.1 as text. The format lists groups of entities of a geometry, not of elements: points, sides and
+// cells that are in the same patches and sets become one entity, which is in their groups. All nodes belong to the first
+// volume.
 #include <algorithm>
 #include <charconv>
 #include <map>
