@@ -20,7 +20,7 @@ from ._vdb import Grid, read_vdb, sample_grid, write_usd
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
-from .reports import ApproximateReport, ControlMeshReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
+from .reports import ApproximateReport, ControlMeshReport, DifferenceReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
 
 __version__: str
 
@@ -292,6 +292,24 @@ def mend_folds(
     tests:       the most tests of a cell [1 to 1000000]
     boundary_move: points of the boundary may move by this part of their shortest edge [0 to 10]
     rounds:      move points and check again up to N times [1 to 50]
+    """
+
+def mesh_difference(
+    test: HexMesh, reference: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, progress: Progress = None
+) -> tuple[HexMesh, DifferenceReport]:
+    """The first mesh with test - reference of each field that both have, at its points, as `subvol compare A B -o FILE` writes it.
+
+    Values of the reference are those of its limit at the points, or those of its own points if both meshes have the same points and
+    cells. The report has same_points, whether that is so; outside, the number of points outside the reference, which get the
+    value of its nearest place, and outside_distance, how far the farthest is; and for each of fields max, at and point: the largest
+    difference and where it is.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
     """
 
 def page(
@@ -809,7 +827,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "check_folds_between", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
+    "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_series", "write_usd", "write_vdb", "write_wavelets",
 ]

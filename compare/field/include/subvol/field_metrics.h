@@ -19,8 +19,9 @@ namespace subvol {
 /// gradients were compared.
 struct FieldDifference {
     double l1 = std::numeric_limits<double>::quiet_NaN();  ///< mean absolute difference
-    double l2 = l1;    ///< root mean square difference: the L² norm over the volume, divided by the root of the volume
-    double linf = l1;  ///< largest absolute difference at a place
+    double l2 = l1;     ///< root mean square difference: the L² norm over the volume, divided by the root of the volume
+    double linf = l1;   ///< largest absolute difference at a place
+    Vec3 linf_at{0.0};  ///< that place; the first of several
     /// Root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places.
     double gradient_rmse = l1;
     std::size_t samples = 0;    ///< places where both fields have a value
