@@ -319,7 +319,8 @@ def page(
     look: Optional[str] = None, opacity_unit: Optional[float] = None, range: Optional[str] = None,
     opacity: Optional[str] = None, iso: Optional[Union[float, str]] = None, log: bool = False,
     symlog: Optional[float] = None, bands: Optional[int] = None, below: Optional[str] = None,
-    above: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
+    above: Optional[str] = None, view: str = 'iso', up: str = 'z', fit: bool = False, ortho: bool = False,
+    progress: Progress = None
 ) -> Page:
     """A page of a field of a mesh, or of the body within the surface of a level set: as `subvol page`.
 
@@ -353,6 +354,7 @@ def page(
                  eye, target, up, fovy_deg or ortho_height
     view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
                  -z, iso, front, back, left, right, top, bottom; not with camera]
+    up:          the axis of the data that is up, in iso, front and all other views: x, y or z [x, y, z; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
     """
@@ -497,10 +499,10 @@ def render(
     opacity_unit: Optional[float] = None, range: Optional[str] = None, opacity: Optional[str] = None,
     iso: Optional[Union[float, str]] = None, log: bool = False, symlog: Optional[float] = None,
     bands: Optional[int] = None, below: Optional[str] = None, above: Optional[str] = None, view: str = 'iso',
-    fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30, stream_direction: str = 'both',
-    stream_length: Optional[float] = None, stream_time: Optional[float] = None, stream_tolerance: float = 1e-06,
-    stream_step: float = 0.01, tube_radius: float = 0.003, glyphs: str = '', glyph_count: int = 400,
-    glyph_size: float = 0.06, progress: Progress = None
+    up: str = 'z', fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30,
+    stream_direction: str = 'both', stream_length: Optional[float] = None, stream_time: Optional[float] = None,
+    stream_tolerance: float = 1e-06, stream_step: float = 0.01, tube_radius: float = 0.003, glyphs: str = '',
+    glyph_count: int = 400, glyph_size: float = 0.06, progress: Progress = None
 ) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -590,6 +592,7 @@ def render(
                  eye, target, up, fovy_deg or ortho_height
     view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
                  -z, iso, front, back, left, right, top, bottom; not with camera]
+    up:          the axis of the data that is up, in iso, front and all other views: x, y or z [x, y, z; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
     streamlines: draw streamlines of this vector as tubes, in the colours of the field that is shown, which is the length of
