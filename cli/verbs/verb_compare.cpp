@@ -33,7 +33,6 @@
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
-#include "subvol/mesh_difference.h"
 #include "subvol/option.h"
 #include "text.h"
 #include "verb.h"

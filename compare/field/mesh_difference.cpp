@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/mesh_difference.h"
+#include "subvol/field_metrics.h"
 
 #include <tbb/parallel_for.h>
 

@@ -14,7 +14,6 @@
 #include "subvol/field_metrics.h"
 #include "subvol/flip.h"
 #include "subvol/image_metrics.h"
-#include "subvol/mesh_difference.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
 #include "subvol/probe.h"

@@ -10,7 +10,6 @@
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/image_regions.h"
-#include "subvol/mesh_difference.h"
 #include "subvol/mesh_field.h"
 #include "subvol/oiio_compare.h"
 #include "subvol/picture_metrics.h"
