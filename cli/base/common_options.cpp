@@ -19,7 +19,7 @@ namespace {
 /// What is made of a mesh that was read.
 std::vector<Option> options_of_cells(CommonOptions& options, bool several) {
     Option field = several ? Option("field", options.fields) : Option("field", options.field);
-    field.help("EXPR", text("the field to use, or a quantity such as U.x, mises(S) or grad(T) ",
+    field.help("EXPR", text("the field to use, or a quantity such as U.x, mises(S), grad(T) or quality ",
                             several ? "(repeatable: a column and a curve each) " : "",
                             "(default: a physical scalar, else the first scalar, stress or vector, else density 1)"));
     return {std::move(field),
