@@ -42,6 +42,11 @@ void VdbArguments::add_grids_to(CLI::App& app) {
     add_option(app, Option("clamp", clamp)
                         .help("keep values within the range of the field at the mesh's points: interpolating schemes overshoot "
                               "between them"));
+    add_option(app, Option("prune", prune)
+                        .between(0, 1e30)
+                        .help("T",
+                              "leave out voxels whose value is at most this far from the background, 0; of vectors their "
+                              "length counts"));
     add_option(app, Option("up", up).help("AXIS", "the axis that is up: z, or y as in most programs for pictures (default z)"));
     add_option(app, Option("scale", scale).positive().help("S", "multiply all coordinates by this"));
     for (const Option& option : options_of(grids)) {

@@ -24,6 +24,7 @@ struct VdbArguments {
 
     std::vector<std::string> fields, remaps;
     bool clamp = false;
+    std::optional<double> prune;  // voxels at most this far from the background are left out
     std::string up = "z";
     double scale = 1;
     bool error = false;

@@ -10,33 +10,45 @@
 #include "subvol/detail/most_threads.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
+#include "text.h"
 
 namespace subvol::cli {
 
 namespace {
 
 /// What is made of a mesh that was read.
-std::vector<Option> options_of_cells(CommonOptions& options) {
-    return {
-        Option("field", options.field)
-            .help(
-                "EXPR",
-                "the field to use, or a quantity such as U.x, mises(S) or grad(T) (default: a physical scalar, else the first "
-                "scalar, stress or vector, else density 1)"),
-        Option("density", options.density)
-            .help("EXPR", "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
-            .instead_of({"field"}),
-        Option("warp", options.warp)
-            .help("FIELD[*S|*auto]",
-                  "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's "
-                  "diagonal"),
-        Option("only", options.only)
-            .help("REGION",
-                  "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, "
-                  "set:NAME, nodes:NAME, fold:VERDICT or where:EXPR (repeatable: in all of them)"),
-        Option("clamp-file", options.clamp_file)
-            .help("keep the fields between the points within the range that they have in the file, of cells in that of the "
-                  "cells; --clamp file is the same")};
+std::vector<Option> options_of_cells(CommonOptions& options, bool several) {
+    Option field = several ? Option("field", options.fields) : Option("field", options.field);
+    field.help("EXPR", text("the field to use, or a quantity such as U.x, mises(S), grad(T) or quality ",
+                            several ? "(repeatable: a column and a curve each) " : "",
+                            "(default: a physical scalar, else the first scalar, stress or vector, else density 1)"));
+    return {std::move(field),
+            Option("density", options.density)
+                .help("EXPR", "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
+                .instead_of({"field"}),
+            Option("warp", options.warp)
+                .help("FIELD[*S|*auto]",
+                      "move the points by this vector field, times a factor; auto: the longest becomes a tenth of the box's "
+                      "diagonal"),
+            Option("only", options.only)
+                .help("REGION",
+                      "only the cells in a region: block:A,B, box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, half:px,py,pz,nx,ny,nz, "
+                      "set:NAME, nodes:NAME, fold:VERDICT or where:EXPR (repeatable: in all of them)"),
+            Option("clamp-file", options.clamp_file)
+                .help("keep the fields between the points within the range that they have in the file, of cells in that of the "
+                      "cells; --clamp file is the same")};
+}
+
+/// Several --field: the first is the one that is used alone, the others are computed beside it.
+void take_fields(CommonOptions& options) {
+    std::vector<std::string> once;
+    for (const std::string& field : options.fields) {
+        if (std::ranges::find(once, field) == once.end()) once.push_back(field);
+    }
+    options.fields = std::move(once);
+    if (options.fields.empty()) return;
+    options.field = options.fields.front();
+    options.at_rest.insert(options.at_rest.end(), options.fields.begin() + 1, options.fields.end());
 }
 
 /// Whatever a verb reads.
@@ -81,8 +93,10 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
 }  // namespace
 
 void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
-    if (reads == Reads::Meshes) {
-        for (const Option& option : options_of_cells(options)) add_option(app, option)->group("Reading meshes");
+    if (reads != Reads::NoMesh) {
+        const bool several = reads == Reads::SeveralFields;
+        if (several) app.parse_complete_callback([&options] { take_fields(options); });
+        for (const Option& option : options_of_cells(options, several)) add_option(app, option)->group("Reading meshes");
         add_mesh_options(app, options);
     }
     options.app = &app;

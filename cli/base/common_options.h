@@ -16,12 +16,14 @@ class App;
 
 namespace subvol::cli {
 
-/// Whether a verb reads meshes; the options for reading them make no sense for others.
-enum class Reads { Meshes, NoMesh };
+/// Whether a verb reads meshes; the options for reading them make no sense for others. SeveralFields: meshes, and --field may
+/// be given more than once.
+enum class Reads { Meshes, SeveralFields, NoMesh };
 
 /// The options that every verb has.
 struct CommonOptions {
     std::optional<std::string> field;
+    std::vector<std::string> fields;          // of a verb that takes several: each --field once, `field` is the first
     std::optional<std::string> density;       // an expression in x, y, z
     std::optional<std::string> warp;          // "DISPL*20"
     std::vector<std::string> only;            // regions

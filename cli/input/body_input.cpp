@@ -10,11 +10,16 @@ namespace {
 
 /// Adds to a mesh the fields that it had and that have other names.
 HexMesh with_others(HexMesh mesh, std::vector<Attribute> fields) {
-    const std::string first = mesh.attributes.front().name;
     for (Attribute& field : fields) {
-        if (field.name != first) mesh.attributes.push_back(std::move(field));
+        if (mesh.find_attribute(field.name) == nullptr) mesh.attributes.push_back(std::move(field));
     }
     return mesh;
+}
+
+std::vector<std::string> names_in(const HexMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Attribute& field : mesh.attributes) names.push_back(field.name);
+    return names;
 }
 
 /// The number of a field that becomes a scalar, and is added if there is none.
@@ -41,16 +46,21 @@ WithFacts<std::string> BodyInput::select(const CommonOptions& options, OtherFiel
     if (!bricks_) {
         if (others == OtherFields::Keep) fields = mesh_.attributes;
         auto [selected, facts] = with_selected_field(std::move(mesh_), options, second);
+        selected_ = names_in(selected);
         mesh_ = with_others(std::move(selected), std::move(fields));
         return {mesh_.attributes.front().name, std::move(facts)};
     }
     WithFacts<StreamedField> selected = select_brick_field(*bricks_, options);
-    change_ = [field = selected.value, others](HexMesh brick) {
+    std::vector<StreamedField> chosen{selected.value};
+    for (std::size_t k = 1; k < options.fields.size(); ++k)
+        chosen.push_back(named_brick_field(*bricks_, options.fields[k], false));
+    selected_ = names_in(with_brick_fields(stand_in(*bricks_), chosen));
+    change_ = [chosen = std::move(chosen), others](HexMesh brick) {
         std::vector<Attribute> all;
         if (others == OtherFields::Keep) all = brick.attributes;
-        return with_others(with_brick_fields(std::move(brick), {field}), std::move(all));
+        return with_others(with_brick_fields(std::move(brick), chosen), std::move(all));
     };
-    return {change_(stand_in(*bricks_)).attributes.front().name, std::move(selected.facts)};
+    return {selected_.front(), std::move(selected.facts)};
 }
 
 std::size_t BodyInput::add_scalar(const std::string& field) {

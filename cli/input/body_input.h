@@ -24,12 +24,15 @@ public:
     /// Refers to this body.
     [[nodiscard]] MeshSource source() const;
 
-    /// Selects the field that the options name, as a scalar: the first of the fields.
+    /// Selects the fields that the options name, as scalars: the first of the fields.
     ///
     /// second:  of a mesh in memory, a field that becomes the last one
-    /// returns: its name; facts as those of `with_selected_field`
+    /// returns: the name of the first; facts as those of `with_selected_field`
     [[nodiscard]] WithFacts<std::string> select(const CommonOptions& options, OtherFields others,
                                                 const std::optional<std::string>& second = {});
+
+    /// The names of the fields that `select` has selected, in their order.
+    [[nodiscard]] const std::vector<std::string>& selected() const { return selected_; }
 
     /// Adds a field as a scalar, unless it is there.
     ///
@@ -65,6 +68,7 @@ private:
     HexMesh mesh_;
     std::optional<Bricks> bricks_;
     BrickFields change_;  // of bricks
+    std::vector<std::string> selected_{};
 };
 
 /// Opens bricks, or reads a mesh without the unused points; --density becomes the first attribute.

@@ -538,6 +538,12 @@ WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& option
                         " fields; --field chooses)"));
     }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
+    for (std::size_t k = 1; k < options.fields.size(); ++k) {
+        SelectedField more = select(options.fields[k]);
+        facts.warn(more.warning);
+        if (std::ranges::find(chosen, more.scalar.name, &Attribute::name) == chosen.end())
+            chosen.push_back(std::move(more.scalar));
+    }
     if (second && *second != chosen.front().name) chosen.push_back(select(second).scalar);
     mesh.attributes = std::move(chosen);
     if (options.clamp_file) bound_as_given(mesh);

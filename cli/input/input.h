@@ -107,7 +107,7 @@ decltype(auto) of_option(const std::string& option, const Call& call) {
 /// The mesh as it is written: with --field that one alone, vectors as they are. throws: Error(InvalidInput) if there is none
 [[nodiscard]] HexMesh with_written_field(HexMesh mesh, const CommonOptions& options);
 
-/// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
+/// The mesh with only the fields that the options select, as scalars, and with the field `second` if that is given.
 [[nodiscard]] WithFacts<HexMesh> with_selected_field(HexMesh mesh, const CommonOptions& options,
                                                      const std::optional<std::string>& second = {});
 

@@ -55,6 +55,7 @@ struct VdbFunctions {
     VdbContents (*read_vdb_contents)(const std::filesystem::path&);
     VdbGrid (*scalar_of)(const VdbGrid&, std::optional<int>, const std::string&);
     void (*clamp_voxels)(VdbGrid&, const FieldRange&);
+    void (*prune_voxels)(VdbGrid&, double);
 
     VdbGrid (*join_grids)(std::vector<VdbGrid>);
     std::optional<std::string> (*text_of_grid)(const VdbGrid&, const std::string&);

@@ -34,6 +34,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .read_vdb_contents = &read_vdb_contents,
         .scalar_of = &scalar_of,
         .clamp_voxels = &clamp_voxels,
+        .prune_voxels = &prune_voxels,
         .join_grids = &join_grids,
         .text_of_grid = &text_of_grid,
         .set_text_of_grid = &set_text_of_grid,

@@ -5,15 +5,19 @@
 
 #include "input.h"
 #include "limit_warning.h"
+#include "subvol/error.h"
 #include "subvol/field_bounds.h"
 #include "subvol/field_range.h"
 #include "subvol/quantity.h"
 #include "subvol/vdb_contents.h"
+#include "text.h"
 #include "vdb_functions.h"
+#include "vdb_output.h"
 
 namespace subvol::cli {
 
-WrittenFields::WrittenFields(const VdbArguments& asked) : fields_(parse_grid_fields(asked.fields)), clamp_(asked.clamp) {
+WrittenFields::WrittenFields(const VdbArguments& asked)
+    : fields_(parse_grid_fields(asked.fields)), clamp_(asked.clamp), prune_(asked.prune) {
     for (const std::string& remap : asked.remaps) remaps_.push_back(parse_remap(remap));
 }
 
@@ -56,7 +60,18 @@ void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) cons
             if (maps(remap, *field, mesh))
                 vdb().clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
         }
+        if (prune_) vdb().prune_voxels(grid, *prune_);
     }
+}
+
+void WrittenFields::prune(std::vector<VdbGrid>& grids) const {
+    if (!prune_) return;
+    for (VdbGrid& grid : grids) vdb().prune_voxels(grid, *prune_);
+}
+
+void WrittenFields::refuse_nothing_left(const std::vector<VdbGrid>& grids) const {
+    if (!prune_ || has_voxels(grids)) return;
+    throw Error(ErrorCode::InvalidInput, "leaves no voxel", text("--prune ", *prune_), "less than the field's values");
 }
 
 Facts WrittenFields::overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, bool of_file) const {

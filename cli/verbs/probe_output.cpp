@@ -91,7 +91,9 @@ void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const 
     std::string table = "x,y,z,inside,cell,u,v,w";
     for (const ProbedField& field : found.fields) {
         for (const std::string& name : channel_names(field)) {
-            for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + csv_text(name + end);
+            table += "," + csv_text(name);
+            if (field.gradients.empty()) continue;
+            for (const char* end : {"_dx", "_dy", "_dz"}) table += "," + csv_text(name + end);
         }
     }
     table += "\n";
@@ -106,7 +108,10 @@ void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const 
         }
         for (const ProbedField& field : found.fields) {
             for (std::size_t c = 0; c < field.channels; ++c) {
-                table += found.inside(p) ? "," + exact_text(field.values[p * field.channels + c]) + "," : ",,,,";
+                table += ",";
+                if (found.inside(p)) table += exact_text(field.values[p * field.channels + c]);
+                if (field.gradients.empty()) continue;
+                table += found.inside(p) ? "," : ",,,";
                 if (found.inside(p)) put(field.gradients[p * field.channels + c]);
             }
         }
@@ -115,9 +120,8 @@ void write_csv(const ProbeResult& found, const std::vector<Vec3>& places, const 
     detail::write_text_file(file, table);
 }
 
-/// The chosen field over the distance from the line's first end, with gaps where the line is outside.
-void write_plot(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file) {
-    const ProbedField& field = found.fields.front();
+/// A field over the distance from the line's first end, with gaps where the line is outside.
+PlotLine curve_of(const ProbedField& field, const ProbeResult& found, const std::vector<Vec3>& places) {
     PlotLine line{field.name, {}, {}};
     bool gap = false;
     for (std::size_t p = 0; p < places.size(); ++p) {
@@ -131,12 +135,29 @@ void write_plot(const ProbeResult& found, const std::vector<Vec3>& places, const
         line.y.push_back(field.values[p * field.channels]);
     }
     if (line.x.empty()) throw Error(ErrorCode::InvalidInput, "all of the line is outside the volume", "--line");
+    return line;
+}
+
+/// fields: how many of the first ones have a curve
+void write_plot(const ProbeResult& found, const std::vector<Vec3>& places, std::size_t fields, const std::string& file) {
+    std::vector<PlotLine> lines;
+    for (std::size_t f = 0; f < fields; ++f) lines.push_back(curve_of(found.fields[f], found, places));
     detail::write_text_file(file, plot_svg_file({.title = "",
                                                  .x_label = "distance along the line",
-                                                 .y_label = field.name,
+                                                 .y_label = fields == 1 ? lines.front().name : "value",
                                                  .log_x = false,
                                                  .log_y = false,
-                                                 .lines = {line}}));
+                                                 .lines = lines}));
+}
+
+/// The values of some fields, in their order, without gradients.
+ProbeResult values_of(const ProbeResult& found, const std::vector<std::string>& names) {
+    ProbeResult some{found.cells, found.parameters, found.distances, {}, found.rounds};
+    for (const std::string& name : names) {
+        const auto field = std::ranges::find(found.fields, name, &ProbedField::name);
+        some.fields.push_back({field->name, field->channels, field->values, {}});
+    }
+    return some;
 }
 
 /// How far beyond the least and largest value the limit may go.
@@ -277,20 +298,21 @@ std::string csv_text(const std::string& text) {
     return words + "\"";
 }
 
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file,
-                 const CommonOptions& options, Report& report) {
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::vector<std::string>& chosen,
+                 const std::string& file, const CommonOptions& options, Report& report) {
     std::size_t inside = 0;
     for (std::size_t p = 0; p < places.size(); ++p) inside += found.inside(p) ? 1 : 0;
     report["places"] = places.size();
     report["inside"] = inside;
     if (options.json) report["values"] = json_of(found, places);
-    if (!options.quiet || file.empty()) say(found, places, report);
+    const ProbeResult shown = chosen.empty() ? found : values_of(found, chosen);
+    if (!options.quiet || file.empty()) say(shown, places, report);
     if (inside < places.size()) {
         report.note(
             text(count_text(places.size() - inside), " of ", counted(places.size(), "place"), " lie outside the volume"));
     }
-    if (file.ends_with(".csv")) write_csv(found, places, file);
-    if (file.ends_with(".svg")) write_plot(found, places, file);
+    if (file.ends_with(".csv")) write_csv(shown, places, file);
+    if (file.ends_with(".svg")) write_plot(shown, places, chosen.empty() ? 1 : shown.fields.size(), file);
 }
 
 Json json_of(const std::vector<PatchMeasure>& found) {

@@ -11,12 +11,14 @@
 
 namespace subvol::cli {
 
-/// Places that were probed: into the report, and into a table (.csv) or a plot of the first field over the distance (.svg).
+/// Places that were probed: into the report, and into a table (.csv) or a plot over the distance (.svg).
 ///
+/// chosen: the fields of the lines for people, the table, which has their values alone, and the plot, a curve for each; empty:
+///         all fields and their gradients, and a curve for the first
 /// file: empty: none
 /// options: with --json the report gets the values of all places; with --quiet they are not said if a file has them
-void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::string& file,
-                 const CommonOptions& options, Report& report);
+void show_probed(const ProbeResult& found, const std::vector<Vec3>& places, const std::vector<std::string>& chosen,
+                 const std::string& file, const CommonOptions& options, Report& report);
 
 /// The places with their values, as `show_probed` puts them into the report.
 [[nodiscard]] Json json_of(const ProbeResult& found, const std::vector<Vec3>& places);

@@ -40,9 +40,10 @@ std::vector<std::string> common_fields(const std::vector<ProbedStep>& steps) {
     return names;
 }
 
-SeriesTable table_of_places(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places) {
+SeriesTable table_of_places(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places,
+                            const std::vector<std::string>& chosen) {
     SeriesTable table;
-    const std::vector<std::string> names = common_fields(steps);
+    const std::vector<std::string> names = chosen.empty() ? common_fields(steps) : chosen;
     const auto field_in = [](const ProbedStep& step, const std::string& name) -> const ProbedField& {
         return *std::ranges::find(step.places->fields, name, &ProbedField::name);
     };
@@ -126,9 +127,11 @@ void write_table(const SeriesTable& table, const std::string& file) {
     detail::write_text_file(file, lines);
 }
 
-/// The first field over time: a line for each place, the flow or area of each patch, or the field's mean, minimum and maximum
-/// over the whole.
-void write_plot(const SeriesTable& table, bool places, const std::string& file) {
+/// Over time: a line for each place and field, the flow or area of each patch, or each field's mean, minimum and maximum over
+/// the whole.
+///
+/// fields: how many of the first ones; of patches 1
+void write_plot(const SeriesTable& table, bool labelled, std::size_t fields, const std::string& file) {
     std::vector<PlotLine> lines;
     const auto add = [&](const std::string& name, double time, double value) {
         auto line = std::ranges::find(lines, name, &PlotLine::name);
@@ -138,15 +141,17 @@ void write_plot(const SeriesTable& table, bool places, const std::string& file) 
         line->y.push_back(value);
     };
     for (const SeriesTable::SeriesTableRow& row : table.rows) {
-        if (places) {
-            add(row.label, row.time, row.numbers[0]);
-        } else if (row.label == "whole") {
-            for (const std::size_t c : {std::size_t{1}, std::size_t{3}, std::size_t{4}})
-                add(table.columns[c], row.time, row.numbers[c]);
+        for (std::size_t f = 0; f < fields; ++f) {
+            if (labelled) {
+                const std::string name = fields == 1 ? row.label : table.columns[f] + " at " + row.label;
+                add(name, row.time, row.numbers[f]);
+            } else if (row.label == "whole") {
+                for (const std::size_t c : {4 * f + 1, 4 * f + 3, 4 * f + 4}) add(table.columns[c], row.time, row.numbers[c]);
+            }
         }
     }
     std::erase_if(lines, [](const PlotLine& line) { return line.x.empty(); });
-    const std::string label = places ? table.columns[0] : "value";
+    const std::string label = labelled && fields == 1 ? table.columns[0] : "value";
     detail::write_text_file(
         file,
         plot_svg_file(
@@ -155,8 +160,8 @@ void write_plot(const SeriesTable& table, bool places, const std::string& file) 
 
 }  // namespace
 
-void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places, const std::string& file,
-                const CommonOptions& options, Report& report) {
+void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places, const std::vector<std::string>& chosen,
+                const std::string& file, const CommonOptions& options, Report& report) {
     Json all = Json::array();
     for (const ProbedStep& step : steps) {
         Json one{{"step", step.step}, {"time", step.time}};
@@ -168,13 +173,14 @@ void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& p
     report["steps"] = std::move(all);
     const bool of_places = steps.front().places.has_value();
     const bool of_patches = !steps.front().patches.empty();
-    const SeriesTable table = of_places    ? table_of_places(steps, places)
+    const SeriesTable table = of_places    ? table_of_places(steps, places, chosen)
                               : of_patches ? table_of_patches(steps)
                                            : table_of_parts(steps);
     if (!options.quiet || file.empty()) say(table, report);
     report.all_said();
     if (file.ends_with(".csv")) write_table(table, file);
-    if (file.ends_with(".svg")) write_plot(table, of_places || of_patches, file);
+    const std::size_t fields = of_patches || chosen.empty() ? 1 : chosen.size();
+    if (file.ends_with(".svg")) write_plot(table, of_places || of_patches, fields, file);
 }
 
 }  // namespace subvol::cli

@@ -22,10 +22,11 @@ struct ProbedStep {
 };
 
 /// The steps of a series: into the report as `steps`, as lines for people, and into a table with a row for each step and place,
-/// or each step and part (.csv), or a plot of the first field over time (.svg).
+/// or each step and part (.csv), or a plot over time (.svg).
 ///
+/// chosen: of places, the fields of the lines, the table and the plot; empty: all fields, and the first one in the plot
 /// file: empty: none; with --quiet there are no lines if a file has them
-void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places, const std::string& file,
-                const CommonOptions& options, Report& report);
+void show_steps(const std::vector<ProbedStep>& steps, const std::vector<Vec3>& places, const std::vector<std::string>& chosen,
+                const std::string& file, const CommonOptions& options, Report& report);
 
 }  // namespace subvol::cli

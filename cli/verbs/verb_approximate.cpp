@@ -57,7 +57,7 @@ public:
         : Verb(program, "approximate",
                "Fit a control mesh to data: its fields to a mesh, a grid or samples, its shape to a surface.",
                "  subvol approximate fine.vtu --onto coarse.vtu -o fitted.vtu\n"
-               "  subvol approximate smoke.vdb --onto model:twist:12 -o smoke.vtu --refine 2 --tolerance .01\n"
+               "  subvol approximate smoke.vdb --cells 32 -o smoke.vtu --refine 1 --tolerance .01\n"
                "  subvol approximate measured.csv --onto part.vtu -o fitted.vtu --smoothing 1e-3\n"
                "  subvol approximate run.pvd --onto coarse.vtu -o 'fitted_####.vtu' --step all\n"
                "  subvol approximate 'smoke_####.vdb' --onto coarse.vtu -o 'fitted_####.vtu' --frames 1-48\n"
@@ -75,7 +75,14 @@ public:
                   "(.csv, .txt) of x, y, z and values, or "
                   "with --shape a surface (.stl, .obj, .ply, .glb, or a .vdb level set, where its distance is 0)")
             ->required();
-        add_option(app(), Option("onto", onto_).help("MESH", "the control mesh: a file or model:NAME:RESOLUTION"))->required();
+        add_option(app(), Option("onto", onto_).help("MESH", "the control mesh: a file or model:NAME:RESOLUTION"));
+        add_option(app(),
+                   Option("cells", cells_)
+                       .between(1, 1000)
+                       .help("N",
+                             "of grids, instead of --onto: a box of cubes about the active voxels, of all frames, N along "
+                             "its longest side")
+                       .instead_of({"onto"}));
         add_option(app(),
                    Option("output", output_).also("o").help("FILE", "the control mesh with the fitted fields (.vtu, .vtkhdf)"))
             ->required();
@@ -100,15 +107,18 @@ public:
         options.scheme = scheme_.options(0, report.progress()).scheme;
         options.names = OptionNames::Flags;
         options.progress = report.progress();
+        options.keep_sign = is_vdb_file(input_);
         report.if_long("--levels 1");
-        if (kind_of(onto_) == InputKind::Bricks) {
+        check_control(report);
+        if (!cells_ && kind_of(onto_) == InputKind::Bricks) {
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
         const std::optional<Sequence> sequence = steps_or_frames(report);
         MeshSets sets;
-        HexMesh onto = report.unpack(load_mesh(onto_, CommonOptions{}, report.progress(), sets));
+        HexMesh onto = cells_ ? mesh_of_box(box_of_grids(sequence, report), *cells_)
+                              : report.unpack(load_mesh(onto_, CommonOptions{}, report.progress(), sets));
         report["input"] = input_;
-        report["onto"] = onto_;
+        if (!cells_) report["onto"] = onto_;
         if (sequence) {
             fit_all(*sequence, std::move(onto), sets, options, report);
             return 0;
@@ -128,6 +138,18 @@ public:
     }
 
 private:
+    void check_control(Report& report) const {
+        report["input"] = input_;
+        if (!cells_ && onto_.empty()) {
+            throw Error(ErrorCode::InvalidInput, "is needed: the control mesh", "--onto",
+                        is_vdb_file(input_) ? "--onto MESH, or --cells N for a box about the grid" : "--onto MESH");
+        }
+        if (!cells_) return;
+        if (!is_vdb_file(input_))
+            throw Error(ErrorCode::InvalidInput, "makes a box about a grid of voxels; this is none", "--cells", "--onto MESH");
+        if (shape_) throw Error(ErrorCode::InvalidInput, "needs a control mesh near the shape", "--shape", "--onto MESH");
+    }
+
     /// Data of several times.
     ///
     /// times: of steps, from step 0; empty: of frames
@@ -139,6 +161,25 @@ private:
         std::function<std::string(int)> input;
         std::function<CommonOptions(int)> options;
     };
+
+    /// The box of the active voxels, of all frames.
+    [[nodiscard]] Box box_of_grids(const std::optional<Sequence>& sequence, Report& report) {
+        Box box;
+        const auto add = [&](const std::string& input, const CommonOptions& reading) {
+            report["input"] = input;
+            const VdbGrid grid = report.unpack(load_grid(input, reading, report.progress()));
+            const Box one = box_of(grid.report());
+            box.add(one.lower);
+            box.add(one.upper);
+        };
+        if (!sequence) {
+            add(input_, common());
+        } else {
+            for (int number = sequence->range.first; number <= sequence->range.last; ++number)
+                add(sequence->input(number), sequence->options(number));
+        }
+        return box;
+    }
 
     [[nodiscard]] std::optional<Sequence> steps_or_frames(Report& report) const {
         const bool of_files = !frames_.empty() || has_number(input_);
@@ -340,6 +381,7 @@ private:
     }
 
     std::string input_, onto_, output_, frames_;
+    std::optional<int> cells_;
     std::vector<Vec3> places_;  // where grids are sampled
     RefineArguments scheme_;
     ApproximateOptions options_;

@@ -5,6 +5,7 @@
 //     both inputs ─► a view of each field ─► l1, l2, linf and gradients at N places
 //                                         ─► integrals over the domains, and Hausdorff distance of isosurfaces
 //                                         ─► the vertices that the first refinement of the mesh B adds
+//                                         ─► the differences at the points of the mesh A, as a file
 //
 // Places at which A has no value count as uncovered. If less than a given share of them is covered, no demand counts as met,
 // as the figures are then those of a part of B. Each demand METRIC=VALUE is judged by whether more or less of its metric is
@@ -20,11 +21,15 @@
 #include "field_input.h"
 #include "figures.h"
 #include "input.h"
+#include "mesh_figures.h"
+#include "mesh_output.h"
 #include "options.h"
+#include "outputs.h"
 #include "picture_comparison.h"
+#include "probe_output.h"
 #include "quantities.h"
 #include "refine_arguments.h"
-#include "subvol/bricks.h"
+#include "steps.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
@@ -44,15 +49,23 @@ struct FieldComparison {
     std::optional<int> resolution{};
     std::optional<double> iso;
     double least_coverage = 0.99;
+    std::string output;                 // a file of the differences on A's mesh
+    std::optional<std::string> step_b;  // of B, if it is another one than that of A
     RefineArguments refine;
 
     void add_to(CLI::App& app);
+
+    /// Refuses options that need meshes, or a file of steps as B. meshes: A and B are
+    void check(bool meshes, const std::string& reference) const;
 
     /// The names of the figures that `measure` will give; `of_mesh`: the second is a mesh.
     [[nodiscard]] std::vector<std::string> names(bool of_mesh) const;
 
     [[nodiscard]] Figures measure(const std::string& test, const std::string& reference, const CommonOptions& options,
                                   Report& report) const;
+
+    /// The differences at the points of A, as a file and as `difference` of the report.
+    void write_difference(const FieldInput& a, const FieldInput& b, Report& report) const;
 };
 
 void FieldComparison::add_to(CLI::App& app) {
@@ -77,7 +90,39 @@ void FieldComparison::add_to(CLI::App& app) {
                               "(default 128)"))
         ->group(group);
     refine.add_to(app, "compare meshes at this level; omitted: the limit, by curved pieces within tolerance");
+    add_option(app,
+               Option("output", output)
+                   .also("o")
+                   .help("FILE",
+                         "of two meshes: A's mesh with the differences A - B of their fields, or of --field, at its points "
+                         "(.vtu, .vtkhdf)")
+                   .not_with("levels"))
+        ->group(group);
+    add_option(app, Option("step-b", step_b).help("N|last", "the step of B, if it is another one than that of A"))
+        ->group(group);
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
+}
+
+void FieldComparison::check(bool meshes, const std::string& reference) const {
+    if (!output.empty()) {
+        check_output(output, {".vtu", ".vtkhdf"});
+        if (!meshes) throw Error(ErrorCode::InvalidInput, "needs two meshes", "--output", "a mesh as A and one as B");
+    }
+    if (!step_b) return;
+    if (!may_have_steps(reference))
+        throw Error(ErrorCode::InvalidInput, "needs a file of a mesh with steps as B", "--step-b", "a file of steps");
+    CommonOptions of_b;
+    of_b.step = step_b;
+    const std::optional<std::size_t> step = [&] {
+        try {
+            return one_step(reference, of_b);
+        } catch (const Error& error) {
+            throw Error(error.code(), error.message(), "--step-b", "a number from 0, or last");
+        }
+    }();
+    const std::size_t steps = open_series(reference).size();
+    if (*step < steps) return;
+    throw Error(ErrorCode::InvalidInput, text("there is no step ", *step), "--step-b", text("0 to ", steps - 1));
 }
 
 std::vector<std::string> FieldComparison::names(bool of_mesh) const {
@@ -90,9 +135,16 @@ std::vector<std::string> FieldComparison::names(bool of_mesh) const {
 Figures FieldComparison::measure(const std::string& test, const std::string& reference, const CommonOptions& options,
                                  Report& report) const {
     report["input"] = test;  // for errors
-    const FieldInput a = report.unpack(load_field(test, options, refine, "a", report.progress()));
+    const KeepMesh keep = output.empty() || options.field || options.density ? KeepMesh::No : KeepMesh::Yes;
+    const FieldInput a = report.unpack(load_field(test, options, refine, "a", report.progress(), keep));
     report["input"] = reference;
-    const FieldInput b = report.unpack(load_field(reference, options, refine, "b", report.progress()));
+    CommonOptions of_b = options;
+    if (step_b) {
+        of_b.step = step_b;
+        of_b.read.time.reset();
+        of_b.interpolate_time = false;
+    }
+    const FieldInput b = report.unpack(load_field(reference, of_b, refine, "b", report.progress(), keep));
     const FieldDifference errors = report.timed("samples", [&] {
         return compare_fields(a.view, b.view, {.samples = samples, .seed = options.seed, .progress = report.progress()});
     });
@@ -103,6 +155,7 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
     figures.put("l1", errors.l1);
     figures.put("l2", errors.l2);
     figures.put("linf", errors.linf);
+    report["linf_at"] = json_of(errors.linf_at);
     figures.put("gradient_rmse", errors.gradient_rmse);
     const MassError mass = report.timed("mass", [&] { return mass_error(a.view, b.view, resolution, report.progress()); });
     figures.put("mass", mass.relative);
@@ -132,7 +185,30 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
                          errors.samples + errors.uncovered, " places in ", reference, ", less than --coverage ",
                          least_coverage));
     }
+    if (!output.empty()) write_difference(a, b, report);
     return figures;
+}
+
+void FieldComparison::write_difference(const FieldInput& a, const FieldInput& b, Report& report) const {
+    const HexMesh &test = a.read ? *a.read : *a.mesh, &reference = b.read ? *b.read : *b.mesh;
+    const MeshDifferenceOptions asked{.scheme = refine.options(0, nullptr).scheme, .progress = report.progress()};
+    const MeshDifference found = report.timed("difference", [&] {
+        try {
+            return mesh_difference(test, reference, asked);
+        } catch (const Error& error) {
+            if (error.where() != "mesh_difference") throw;
+            throw Error(error.code(), error.message(), "A, B", error.allowed());
+        }
+    });
+    report.merge(write_reported(output, found.mesh, {}, a.sets, report.progress()));
+    Facts facts;
+    facts["difference"] = facts_of(found);
+    report.merge(facts);
+    report["output"] = output;
+    if (found.outside > 0) {
+        report.warn(text(counted(found.outside, "point"), " of A lie outside B, by at most ", found.outside_world,
+                         ": their differences are those from the nearest place of B"));
+    }
 }
 
 constexpr int kComparisonFailed = 1;
@@ -146,6 +222,8 @@ public:
                "  subvol compare a.png b.png --heatmap flip.png --heatmap-of flip\n"
                "  subvol compare a.exr b.exr --edge-band 2 --fail-under interior.rmse=.001\n"
                "  subvol compare points.ply mesh.vtu --iso .5 --fail-under l2=.01\n"
+               "  subvol compare run2.vtu run1.vtu --field 'mises(STRESS)' -o difference.vtu\n"
+               "  subvol compare run.pvd run.pvd --step 20 --step-b 10 -o change.vtu\n"
                "\n"
                "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
                "flip; ssim of 8-bit sRGB luminance, ssim_linear of linear RGB; under srgb8 the differences of 8-bit sRGB. "
@@ -153,7 +231,13 @@ public:
                "square), linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the "
                "vertices that its first refinement adds (200,000 of them stand for more). Parts of pictures (.exr with a data "
                "window) are compared where they "
-               "overlap. Exit code 1 if a --fail-under is not met, or one is given and the first field has values at less of "
+               "overlap. Fields: linf_at is the place of linf, among those of --samples. With --output also difference: "
+               "same_points, "
+               "outside and outside_distance (points of A outside B, which are compared with its nearest place), fields {name: "
+               "max, at, point}; values of A at its points, of B those of its limit there, or point by point where both have "
+               "the "
+               "same points and cells. Exit code 1 if a --fail-under is not met, or one is given and the first field has "
+               "values at less of "
                "the second's "
                "domain than --coverage.") {
         show_limit_of_parts();
@@ -168,7 +252,7 @@ public:
         pictures_.add_to(app());
         fields_.add_to(app());
         set_essentials({"--fail-under", "--heatmap", "--heatmap-of", "--edge-band", "--samples", "--coverage", "--iso",
-                        "--levels", "--field", "--json"});
+                        "--levels", "--output", "--step-b", "--field", "--json"});
     }
 
     int run(Report& report) override {
@@ -192,6 +276,7 @@ public:
         if (!pictures) report.if_long("--samples 10000, --resolution 64, or --levels 1");
         check_there(a_);
         check_there(b_);
+        if (!pictures) fields_.check(is_mesh(a) && is_mesh(b), b_);
 
         const Figures figures = pictures ? pictures_.measure(a_, b_, report) : fields_.measure(a_, b_, common(), report);
         figures.into(report);
@@ -226,7 +311,9 @@ private:
         const auto add = [&](const std::string& name, double value) {
             const PictureMetric* const metric = pictures ? find_metric(name) : nullptr;
             const bool plain = metric == nullptr || metric->unit.empty();
-            lines.emplace_back(name, text(std::setprecision(6), value, plain ? "" : " ", plain ? "" : metric->unit));
+            lines.emplace_back(name,
+                               text(std::setprecision(6), value, plain ? "" : " ", plain ? "" : metric->unit,
+                                    !pictures && name == "linf" ? " at " + place_words(report.json().at("linf_at")) : ""));
         };
         add(first, figures.at(first));
         for (const auto& [name, value] : figures.all()) {
@@ -242,6 +329,14 @@ private:
             lines.emplace_back("pixels", text(part.at("width"), " x ", part.at("height"), " from (", part.at("left"), ", ",
                                               part.at("top"), "), where the two overlap"));
         }
+        if (json.contains("difference")) {
+            for (const auto& [name, largest] : json.at("difference").at("fields").items())
+                lines.emplace_back(name, text("differs at most by ", std::setprecision(6), largest.at("max").get<double>(),
+                                              " at point ", largest.at("point"), " (", place_words(largest.at("at")), ")"));
+            lines.emplace_back("differences",
+                               text(json.at("output").get<std::string>(), ", at the points of A",
+                                    json.at("difference").at("same_points").get<bool>() ? ", which B has, too" : ""));
+        }
         if (json.contains("heatmap")) lines.emplace_back("heatmap", json.at("heatmap").get<std::string>());
         if (judges()) {
             std::vector<std::string> met = demands_;
@@ -254,10 +349,13 @@ private:
         report.all_said();
     }
 
+    /// "0.5,1,0.25" of a list of numbers.
+    static std::string place_words(const Json& place) { return place_text({place.at(0), place.at(1), place.at(2)}); }
+
     /// Checks both inputs before a long time is spent on one of them.
     static void check_there(const std::string& input) {
         std::error_code ignored;
-        const bool there = input.starts_with("model:") || std::filesystem::is_regular_file(input, ignored) || is_bricks(input);
+        const bool there = input.starts_with("model:") || std::filesystem::exists(input, ignored);
         if (there) return;
         throw Error(ErrorCode::Io, "cannot be read: no such file", input);
     }

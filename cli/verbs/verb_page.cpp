@@ -66,14 +66,14 @@ public:
             ->transform(number_in(1e4, 2e9));
         add_option(app(), Option("title", title_).help("TEXT", "the page's title (default: the file's name)"));
         add_option(app(), Option("no-reference", no_reference_).help("without the picture of `render` to compare with"));
-        picture_.add_some_to(app(), {"--size", "--camera", "--view", "--ortho", "--look", "--tf", "--range", "--log",
+        picture_.add_some_to(app(), {"--size", "--camera", "--view", "--up", "--ortho", "--look", "--tf", "--range", "--log",
                                      "--symlog", "--bands", "--below", "--above", "--opacity", "--opacity-unit"});
         add_option(app(), Option("unit", unit_).help("TEXT", "the first field's unit, for the legend"));
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--fields", "--field", "--look", "--tf", "--opacity", "--view", "--camera", "--max-bytes",
                         "--per-edge", "--title", "--json"});
-        group("Camera", {"--size", "--camera", "--view", "--ortho"});
+        group("Camera", {"--size", "--camera", "--view", "--up", "--ortho"});
         group("Colours and light", {"--look", "--tf", "--range", "--log", "--symlog", "--bands", "--below", "--above",
                                     "--opacity", "--opacity-unit", "--unit"});
         group("Kernels",
@@ -239,6 +239,7 @@ private:
         const std::vector<View> views = picture_.make_views(
             box_, mesh_.cells.empty() ? step.boundary.surface.points : framed_points(mesh_, picture_.look, optics));
         options.camera = views.front().camera();
+        options.up = picture_.eye.up;
         if (no_reference_) return;
         SplatOptions splat{.samples = solid ? 2 : 1, .progress = report.progress()};
         if (solid) splat.shading = shading_for(optics.function());

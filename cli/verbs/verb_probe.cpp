@@ -76,6 +76,7 @@ public:
         : Verb(program, "probe", "Evaluate the limit at points or along a line, or integrate it.",
                "  subvol probe part.vtu --at 0.1,0.2,0.3 --at 1,0,0\n"
                "  subvol probe part.vtu --line -1,0,0,1,0,0 --count 500 -o line.svg\n"
+               "  subvol probe part.vtu --line 0,0,0,1,0,0 --field T --field U.x -o two.svg\n"
                "  subvol probe part.vtu --points bolts.csv -o values.csv --json\n"
                "  subvol probe part.vtu --stats --field 'mises(STRESS)' --only box:0,0,0,1,1,2\n"
                "  subvol probe run.exo --at 0,0,1 --step all -o history.csv\n"
@@ -89,7 +90,8 @@ public:
                "before the name the same of the cells as the file has them. With "
                "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
                "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
-               "integral, mean, min, max, extreme_error; flux_sum of several.") {
+               "integral, mean, min, max, extreme_error; flux_sum of several.",
+               Reads::SeveralFields) {
         add_input(app(), "FILE", input_, input_help())->required();
         add_option(app(), Option("at", at_).help("X,Y,Z", "a place in world units (repeatable)"))
             ->transform(number_list(3, "1,2,3"));
@@ -108,9 +110,11 @@ public:
                        .help("NAME", "area and means over a patch of the boundary, as info lists them; all (repeatable)"));
         add_option(app(),
                    Option("flux", flux_).help("EXPR", "the flow of this vector out through the patches").only_with("patch"));
-        add_option(
-            app(),
-            Option("output", output_).also("o").help("FILE", "a table of all fields (.csv), or a plot along the line (.svg)"));
+        add_option(app(), Option("output", output_)
+                              .also("o")
+                              .help("FILE",
+                                    "a table (.csv) of all fields with gradients, or of the values of --field; or a plot along "
+                                    "the line (.svg)"));
         scheme_.add_to(app(), "tetoct, boxspline: the level whose volume is probed (default 2)");
         set_essentials(
             {"--at", "--line", "--count", "--points", "--stats", "--patch", "--flux", "--output", "--field", "--json"});
@@ -155,7 +159,8 @@ public:
                 probe_tets(tets, body.mesh_for(tets), places, report);
                 if (stats_ && body.sets.sets.size() > 1) report.warn("tetoct and boxspline measure the whole, not its parts");
             } else {
-                if (!places.empty()) show_probed(probe(body, places, limit, report), places, output_, common(), report);
+                if (!places.empty())
+                    show_probed(probe(body, places, limit, report), places, chosen_, output_, common(), report);
                 if (stats_) show_measured(measure(body, limit.scheme, report), body.source().mesh(), !is_model(input_), report);
                 if (!patches_.empty()) {
                     const std::vector<PatchMeasure> found = patches_of(body, limit.scheme, report);
@@ -206,6 +211,7 @@ private:
         // Places have all fields; a field that is named for statistics is measured alone.
         const bool alone = places.empty() && (common().field || common().density);
         (void)report.unpack(body.select(options, alone ? OtherFields::Drop : OtherFields::Keep));
+        if (common().field) chosen_ = body.selected();
         return body;
     }
 
@@ -232,7 +238,7 @@ private:
         }
         taken.finish();
         report.begin_part("", 0, 0);
-        show_steps(steps, places, output_, common(), report);
+        show_steps(steps, places, chosen_, output_, common(), report);
     }
 
     /// The field whose flow is asked for, before others take its name.
@@ -273,7 +279,7 @@ private:
         if (!places.empty()) {
             const auto probe = report.timed("prepare", [&] { return MixedProbe(fine, cells, 0, report.progress()); });
             const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
-            show_probed(found, places, output_, common(), report);
+            show_probed(found, places, chosen_, output_, common(), report);
         }
         if (!stats_) return;
         const LimitMeasure measured = report.timed(
@@ -296,6 +302,7 @@ private:
 
     std::string input_, line_, points_, output_, flux_;
     std::vector<std::string> at_, patches_;
+    std::vector<std::string> chosen_{};  // the fields of --field, by the names that they have; empty: all
     std::optional<Attribute> flux_vectors_;
     std::vector<Region> regions_;  // of --only: the parts of space
     std::size_t count_ = 200;

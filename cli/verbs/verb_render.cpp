@@ -350,7 +350,8 @@ private:
     }
 
     void set_groups() {
-        group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps", "--duration"});
+        group("Camera",
+              {"--size", "--camera", "--view", "--views", "--up", "--fit", "--ortho", "--turntable", "--fps", "--duration"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Colours and light", {"--look",        "--iso",          "--tf",
                                     "--tf-range",    "--log",          "--symlog",

@@ -44,12 +44,18 @@ public:
             if (option.name == "tf" || option.name == "range" || option.name == "opacity" || option.name == "opacity-unit")
                 add_option(app(), option);
         }
+        add_option(
+            app(),
+            Option("up", volume_.up)
+                .help("AXIS", "the axis of the data that is up, which the stage says: y or z; the data stay as they are"));
         add_crease_angle();
-        set_essentials({"--output", "--resolution", "--field", "--step", "--tf", "--json"});
+        set_essentials({"--output", "--resolution", "--field", "--step", "--tf", "--up", "--json"});
     }
 
     int run(Report& report) override {
         check_output(output_, {".usda"});
+        if (volume_.up == UpAxis::X)
+            throw Error(ErrorCode::InvalidInput, "OpenUSD has no stages whose x is up", "--up", "y or z");
         (void)optics(Box{Vec3(0.0), Vec3(1.0)}, {0, 1});  // a mistake is found before anything is written
         const InputKind kind = kind_of(inputs_.front());
         for (const std::string& input : inputs_) {
@@ -162,7 +168,7 @@ private:
             range.max = steps.size() == 1 ? found.max : std::max(range.max, found.max);
             points.push_back(steps.back().size());
         }
-        write_usd(output_, steps, codes, optics(box_of(steps.front()), range).function());
+        write_usd(output_, steps, codes, optics(box_of(steps.front()), range).function(), volume_.up);
         report["files"] = inputs_;
         report["codes"] = codes;
         report["points"] = std::move(points);

@@ -71,7 +71,8 @@ public:
                         "--to", "--velocity", "--memory", "--nano"});
         group("Voxels", {"--voxel-size", "--resolution", "--like", "--budget"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle", "--from", "--per-edge"});
-        group("Grids", {"--fields", "--cell-ids", "--mask", "--coverage", "--error", "--sdf", "--half-width", "--half"});
+        group("Grids",
+              {"--fields", "--cell-ids", "--mask", "--coverage", "--error", "--sdf", "--half-width", "--half", "--prune"});
         group("Files", {"--compression", "--memory", "--part", "--nano"});
         group("Sequences", {"--frames", "--to", "--velocity", "--fps"});
     }
@@ -137,6 +138,7 @@ private:
             return;
         }
         std::vector<VdbGrid> grids = report.unpack(maker.make(mesh, options));
+        maker.fields().refuse_nothing_left(grids);
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
         report.merge(maker.fields().overshoot(mesh, grids, !is_model(input_)));
         std::vector<GridErrorFigures> errors;
@@ -176,10 +178,12 @@ private:
         const auto chosen = [&](HexMesh brick) { return with_brick_fields(std::move(brick), fields); };
         const MeshSource source = source_of(bricks).changed(chosen, written);
         if (!shares(share_)) {
-            report.merge(write_parts(input_, source, names, options, output_));
+            report.merge(write_parts(input_, source, names, options, output_,
+                                     [&](std::vector<VdbGrid>& grids) { maker.fields().prune(grids); }));
             return;
         }
         GridShare made = report.timed("rasterize", [&] { return vdb().rasterize_share(source, names, options, share); });
+        maker.fields().prune(made.grids);
         report.merge(facts_of(made.report));
         const auto all = whole_of(std::move(made), report);
         if (!all) return;
@@ -249,7 +253,9 @@ private:
             names.push_back(field.name);
         }
         report["input"] = input_;
-        const std::vector<VdbGrid> grids = report.unpack(grids_of_points(input_, names, common(), app(), options));
+        std::vector<VdbGrid> grids = report.unpack(grids_of_points(input_, names, common(), app(), options));
+        maker.fields().prune(grids);
+        maker.fields().refuse_nothing_left(grids);
         if (!has_voxels(grids)) {
             throw no_voxels(input_, text("try --voxel-size below ", grids.front().report().voxel_size_world));
         }

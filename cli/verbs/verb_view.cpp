@@ -57,12 +57,12 @@ constexpr std::array kNotHere{"--views",       "--turntable",     "--fps",      
                               "--legend-size", "--legend-format", "--extremes"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
-constexpr std::array kOfTheState{"--iso",   "--clip", "--clip-box", "--slice",        "--around",     "--size",     "--camera",
-                                 "--view",  "--fit",  "--ortho",    "--look",         "--tf",         "--tf-range", "--opacity",
-                                 "--clamp", "--axes", "--edges",    "--opacity-unit", "--background", "--method",   "--field",
-                                 "--step",  "--time", "--script",   "--screenshot",   "--only",       "--warp",     "--window",
-                                 "--state", "--json", "--quiet",    "--progress",     "--log",        "--symlog",   "--bands",
-                                 "--below", "--above"};
+constexpr std::array kOfTheState{
+    "--iso",      "--clip",       "--clip-box",     "--slice",      "--around", "--size",     "--camera",  "--view",
+    "--up",       "--fit",        "--ortho",        "--look",       "--tf",     "--tf-range", "--opacity", "--clamp",
+    "--axes",     "--edges",      "--opacity-unit", "--background", "--method", "--field",    "--step",    "--time",
+    "--script",   "--screenshot", "--only",         "--warp",       "--window", "--state",    "--json",    "--quiet",
+    "--progress", "--log",        "--symlog",       "--bands",      "--below",  "--above"};
 
 std::string text_of(const std::string& file) {
     std::string text = detail::read_text(file);
@@ -102,7 +102,7 @@ public:
         for (const char* option : kNotHere) app().remove_option(app().get_option(option));
         set_essentials({"--script", "--screenshot", "--window", "--state", "--field", "--look", "--tf", "--opacity",
                         "--background", "--size", "--view", "--camera", "--method", "--levels", "--json"});
-        group("Camera", {"--size", "--camera", "--view", "--fit", "--ortho"});
+        group("Camera", {"--size", "--camera", "--view", "--up", "--fit", "--ortho"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--log", "--symlog", "--bands", "--below", "--above",
                                     "--opacity", "--opacity-unit", "--background", "--clamp"});
         group("Kernels", {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
@@ -309,7 +309,11 @@ private:
                                          : picture_.look == Look::Solid ? detail::outline_of(*kernels)
                                                                         : std::vector<Vec3>{};
         const View view = picture_.make_views(body.box, framed).front();
-        ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
+        ViewState state{.camera = view.camera(),
+                        .up = picture_.eye.up,
+                        .width = view.width(),
+                        .height = view.height(),
+                        .field = field.value_or("")};
         const bool one_state = !may_have_steps(input.file) || body.points.volume;
         const auto series_step = one_state ? std::nullopt : one_step(input.file, input.options);
         state.step = series_step.value_or(from.times.size() - 1);

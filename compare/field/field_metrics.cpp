@@ -60,20 +60,24 @@ std::vector<FieldSample> random_places_of(const FieldView& test, const FieldView
 
 /// Weighted sums, in the order of the calls.
 struct Errors {
-    double weights = 0, absolutes = 0, squares = 0, largest = 0;
+    double weights = 0, absolutes = 0, squares = 0, largest = -1;
+    Vec3 largest_at{0.0};
 
-    void add(double difference, double weight) {
+    void add(double difference, double weight, const Vec3& at) {
         weights += weight;
         absolutes += weight * std::abs(difference);
         squares += weight * difference * difference;
         // NaN stays, as in the sums.
-        if (!(std::abs(difference) <= largest)) largest = std::isnan(largest) ? largest : std::abs(difference);
+        if (std::isnan(largest) || std::abs(difference) <= largest) return;
+        largest = std::abs(difference);
+        largest_at = at;
     }
     void put_into(FieldDifference& errors) const {
         if (!(weights > 0)) return;
         errors.l1 = absolutes / weights;
         errors.l2 = std::sqrt(squares / weights);
         errors.linf = largest;
+        errors.linf_at = largest_at;
     }
 };
 
@@ -120,7 +124,7 @@ FieldDifference compare_fields(const FieldView& test, const FieldView& reference
     Errors sums;
     for (const FieldSample& place : places) {
         if (place.test) {
-            sums.add(*place.test - *place.reference, 1);
+            sums.add(*place.test - *place.reference, 1, place.x);
             ++errors.samples;
         } else {
             ++errors.uncovered;
@@ -139,7 +143,7 @@ FieldDifference compare_field(const FieldView& test, const FieldSamples& places)
     Errors sums;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (values[i]) {
-            sums.add(*values[i] - places.values[i], places.weights[i]);
+            sums.add(*values[i] - places.values[i], places.weights[i], places.points[i]);
             ++errors.samples;
         } else {
             ++errors.uncovered;

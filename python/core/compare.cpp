@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// What Python asks of two pictures or two fields: figures of their difference, maps of it, and the differences of two meshes as
+// fields. A field of a mesh, of its limit or of kernels is an object that is asked for values at many places at once, in
+// parallel and until Ctrl-C.
 #include <cmath>
 #include <limits>
 
@@ -144,11 +147,24 @@ py::dict difference_of(const Field& test, const Field& reference, std::size_t sa
     figures["l1"] = difference.l1;
     figures["l2"] = difference.l2;
     figures["linf"] = difference.linf;
+    figures["linf_at"] = py::make_tuple(difference.linf_at.x, difference.linf_at.y, difference.linf_at.z);
     figures["gradient_rmse"] = difference.gradient_rmse;
     figures["samples"] = difference.samples;
     figures["uncovered"] = difference.uncovered;
     figures["coverage"] = difference.coverage();
     return figures;
+}
+
+py::tuple mesh_difference_of(const HexMesh& test, const HexMesh& reference, const py::object& progress,
+                             const py::kwargs& keywords) {
+    MeshDifferenceOptions options;
+    set_options(scheme_and(options.scheme), keywords);
+    MeshDifference found = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return mesh_difference(test, reference, options);
+    });
+    const Facts report = facts_of(found);
+    return py::make_tuple(std::move(found.mesh), dict_of(report));
 }
 
 /// Two pictures of the same pixels; the ones given, if they are that.
@@ -196,6 +212,9 @@ void bind_compare(py::module_& module) {
         .def("__repr__", [](const Field& field) { return "<subvol.Field: " + detail::printable(field.name) + ">"; });
     module.def("compare_fields", &difference_of, py::arg("test"), py::arg("reference"), py::arg("samples"), py::arg("seed"),
                py::arg("gradients"), py::arg("progress"));
+    module.def("mesh_difference", &mesh_difference_of, py::arg("test"), py::arg("reference"), py::arg("progress"));
+    MeshDifferenceOptions difference;
+    describe(module, "mesh_difference", scheme_and(difference.scheme));
     module.def("common_pixels", &common_of, py::arg("test"), py::arg("reference"));
     module.def("compare_images", &metrics_of, py::arg("test"), py::arg("reference"));
     module.def(

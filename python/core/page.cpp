@@ -18,9 +18,9 @@ namespace {
 ///
 /// skin: the boundary with its values; None: that of the volume, where the value is that of the first kernel
 py::tuple page(const RbfVolume& volume, const BoundaryValues* skin, const TransferFunction& function, const std::string& unit,
-               double low, double high, const std::string& look, const Camera& camera, double opacity_unit,
-               const std::array<double, 3>& background, const std::string& title, const std::string& source,
-               std::size_t max_bytes, const py::object& progress) {
+               double low, double high, const std::string& look, const Camera& camera, const std::string& up,
+               double opacity_unit, const std::array<double, 3>& background, const std::string& title,
+               const std::string& source, std::size_t max_bytes, const py::object& progress) {
     if (volume.channels.empty()) throw Error(ErrorCode::InvalidInput, "has no channel", "volume", "one channel");
     PageStep step{.label = {}, .volume = volume, .boundary = {}};
     if (skin != nullptr) {
@@ -30,7 +30,11 @@ py::tuple page(const RbfVolume& volume, const BoundaryValues* skin, const Transf
         step.boundary = {volume.boundary, {std::vector<double>(volume.boundary.points.size(), value)}};
     }
     const std::vector<PageStep> steps{std::move(step)};
-    PageOptions options{.title = title, .source = source, .look = named<PageLook>(look, "look"), .camera = camera};
+    PageOptions options{.title = title,
+                        .source = source,
+                        .look = named<PageLook>(look, "look"),
+                        .camera = camera,
+                        .up = named<UpAxis>(up, "up")};
     options.fields.push_back(
         {.name = volume.channels.front().name, .unit = unit, .function = function, .min = low, .max = high});
     options.opacity_unit_world = opacity_unit;
@@ -70,8 +74,8 @@ void bind_page(py::module_& module) {
     GivenPage given;
     describe(module, "page", options_of(given));
     module.def("page", &page, py::arg("volume"), py::arg("skin"), py::arg("function"), py::arg("unit"), py::arg("low"),
-               py::arg("high"), py::arg("look"), py::arg("camera"), py::arg("opacity_unit"), py::arg("background"),
-               py::arg("title"), py::arg("source"), py::arg("max_bytes"), py::arg("progress"));
+               py::arg("high"), py::arg("look"), py::arg("camera"), py::arg("up"), py::arg("opacity_unit"),
+               py::arg("background"), py::arg("title"), py::arg("source"), py::arg("max_bytes"), py::arg("progress"));
     module.def("write_text", &detail::write_text_file, py::arg("path"), py::arg("text"));
 }
 

@@ -270,8 +270,9 @@ void bind_points(py::module_& module) {
         "write_usd",
         [](const std::string& path, const std::vector<std::string>& grids, const std::vector<std::string>& files,
            const std::vector<double>& codes, const std::vector<std::array<std::array<double, 3>, 2>>& boxes,
-           const TransferFunction& knots, double opacity_unit) {
-            UsdVolume volume{.grids = {}, .steps = {}, .colors = knots, .opacity_unit_world = opacity_unit};
+           const TransferFunction& knots, double opacity_unit, const std::string& up) {
+            UsdVolume volume{
+                .grids = {}, .steps = {}, .colors = knots, .opacity_unit_world = opacity_unit, .up = named<UpAxis>(up, "up")};
             for (const std::string& grid : grids) volume.grids.push_back({grid});
             if (codes.size() != files.size()) {
                 throw Error(ErrorCode::InvalidInput,
@@ -292,16 +293,18 @@ void bind_points(py::module_& module) {
             write_usd(path, volume);
         },
         py::arg("path"), py::arg("grids"), py::arg("files"), py::arg("codes"), py::arg("boxes"), py::arg("knots"),
-        py::arg("opacity_unit"));
+        py::arg("opacity_unit"), py::arg("up") = "z");
     module.def(
         "write_usd_splats",
-        [](const std::string& path, const py::object& steps, const std::vector<double>& codes, const TransferFunction& knots) {
+        [](const std::string& path, const py::object& steps, const std::vector<double>& codes, const TransferFunction& knots,
+           const std::string& up) {
+            const UpAxis axis = named<UpAxis>(up, "up");
             std::vector<RbfVolume> volumes;
             for (const RbfVolume* const step : objects_of<RbfVolume>(steps, "steps", "an RbfVolume")) volumes.push_back(*step);
             const py::gil_scoped_release without_gil;
-            write_usd(path, volumes, codes, knots);
+            write_usd(path, volumes, codes, knots, axis);
         },
-        py::arg("path"), py::arg("steps"), py::arg("codes"), py::arg("knots"));
+        py::arg("path"), py::arg("steps"), py::arg("codes"), py::arg("knots"), py::arg("up") = "z");
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"));
     module.def(
         "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));

@@ -20,7 +20,7 @@ from ._vdb import Grid, read_vdb, sample_grid, write_usd
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
-from .reports import ApproximateReport, ControlMeshReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
+from .reports import ApproximateReport, ControlMeshReport, DifferenceReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
 
 __version__: str
 
@@ -294,6 +294,24 @@ def mend_folds(
     rounds:      move points and check again up to N times [1 to 50]
     """
 
+def mesh_difference(
+    test: HexMesh, reference: HexMesh, *, scheme: str = 'mcq', tension: float = 0.0625,
+    crease_angle: Optional[Union[float, str]] = None, progress: Progress = None
+) -> tuple[HexMesh, DifferenceReport]:
+    """The first mesh with test - reference of each field that both have, at its points, as `subvol compare A B -o FILE` writes it.
+
+    Values of the reference are those of its limit at the points, or those of its own points if both meshes have the same points and
+    cells. The report has same_points, whether that is so; outside, the number of points outside the reference, which get the
+    value of its nearest place, and outside_distance, how far the farthest is; and for each of fields max, at and point: the largest
+    difference and where it is.
+
+    scheme:      mcq (smooth, through the control points), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), linear [mcq,
+                 cc, bsxw, linear]
+    tension:     of mcq: 0 is linear; 1/16 reproduces cubics [0 to 0.125; with scheme='mcq']
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees; none: none (default: of a file without
+                 creases 40, on round bodies of few cells 60; of tetoct and boxspline always 60) [none]
+    """
+
 def page(
     mesh: Union[HexMesh, Grid], field: Optional[str] = None, *, per_edge: int = 1,
     camera: Union[None, str, Camera] = None, tf: Union[None, str, TransferFunction] = None, title: str = '',
@@ -301,7 +319,8 @@ def page(
     look: Optional[str] = None, opacity_unit: Optional[float] = None, range: Optional[str] = None,
     opacity: Optional[str] = None, iso: Optional[Union[float, str]] = None, log: bool = False,
     symlog: Optional[float] = None, bands: Optional[int] = None, below: Optional[str] = None,
-    above: Optional[str] = None, view: str = 'iso', fit: bool = False, ortho: bool = False, progress: Progress = None
+    above: Optional[str] = None, view: str = 'iso', up: str = 'z', fit: bool = False, ortho: bool = False,
+    progress: Progress = None
 ) -> Page:
     """A page of a field of a mesh, or of the body within the surface of a level set: as `subvol page`.
 
@@ -335,6 +354,7 @@ def page(
                  eye, target, up, fovy_deg or ortho_height
     view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
                  -z, iso, front, back, left, right, top, bottom; not with camera]
+    up:          the axis of the data that is up, in iso, front and all other views: x, y or z [x, y, z; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
     """
@@ -479,10 +499,10 @@ def render(
     opacity_unit: Optional[float] = None, range: Optional[str] = None, opacity: Optional[str] = None,
     iso: Optional[Union[float, str]] = None, log: bool = False, symlog: Optional[float] = None,
     bands: Optional[int] = None, below: Optional[str] = None, above: Optional[str] = None, view: str = 'iso',
-    fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30, stream_direction: str = 'both',
-    stream_length: Optional[float] = None, stream_time: Optional[float] = None, stream_tolerance: float = 1e-06,
-    stream_step: float = 0.01, tube_radius: float = 0.003, glyphs: str = '', glyph_count: int = 400,
-    glyph_size: float = 0.06, progress: Progress = None
+    up: str = 'z', fit: bool = False, ortho: bool = False, streamlines: str = '', seed_count: int = 30,
+    stream_direction: str = 'both', stream_length: Optional[float] = None, stream_time: Optional[float] = None,
+    stream_tolerance: float = 1e-06, stream_step: float = 0.01, tube_radius: float = 0.003, glyphs: str = '',
+    glyph_count: int = 400, glyph_size: float = 0.06, progress: Progress = None
 ) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
@@ -572,6 +592,7 @@ def render(
                  eye, target, up, fovy_deg or ortho_height
     view:        the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom [+x, -x, +y, -y, +z,
                  -z, iso, front, back, left, right, top, bottom; not with camera]
+    up:          the axis of the data that is up, in iso, front and all other views: x, y or z [x, y, z; not with camera]
     fit:         move the camera along its line of sight until the whole box is in the picture
     ortho:       use an orthographic camera, as high as the box needs or as the JSON file's ortho_height
     streamlines: draw streamlines of this vector as tubes, in the colours of the field that is shown, which is the length of
@@ -809,7 +830,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "check_folds_between", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "mend_folds", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
+    "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_series", "write_usd", "write_vdb", "write_wavelets",
 ]

@@ -81,6 +81,6 @@ def page(mesh: Union[HexMesh, Grid], field: Optional[str] = None, *, per_edge: i
     knots = _core.Knots(light.knots.color, of_volume.knots.opacity)  # a body whose values are all the same is plain
     eye = _camera_of(light, options, camera, (512, 512), chosen, bounds)
     with listening(progress) as listener:
-        text, report = _core.page(volume, skin, knots, unit, low, high, light.look, eye, of_volume.opacity_unit, light.background,
+        text, report = _core.page(volume, skin, knots, unit, low, high, light.look, eye, options.get("up", "z"), of_volume.opacity_unit, light.background,
                                   title or name, "a mesh in Python", max_bytes, listener)
     return Page(text, report)

@@ -19,6 +19,7 @@ from ._fields import as_field
 from ._points import _selected
 from ._progress import Progress, listening
 from ._vdb import Grid, sample_grid
+from .reports import DifferenceReport
 
 Drawable = Union[HexMesh, RbfVolume, Grid]
 
@@ -230,7 +231,8 @@ class ImageComparison:
 
 
 class FieldComparison:
-    """Differences of two fields at random places of the reference, in the field's unit: l1, l2, linf; gradient_rmse per world length;
+    """Differences of two fields at random places of the reference, in the field's unit: l1, l2, linf; linf_at: the place of the largest;
+    gradient_rmse per world length;
     samples: places where both have a value; uncovered: places where only the reference has one; coverage: the share of the first.
 
     The differences are over the places where both have a value, so a coverage below 1 says that they are about a part of the reference;
@@ -240,6 +242,7 @@ class FieldComparison:
         self.l1: float = figures["l1"]
         self.l2: float = figures["l2"]
         self.linf: float = figures["linf"]
+        self.linf_at: tuple[float, float, float] = figures["linf_at"]
         self.gradient_rmse: float = figures["gradient_rmse"]
         self.samples: int = figures["samples"]
         self.uncovered: int = figures["uncovered"]
@@ -270,6 +273,21 @@ def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexM
 
         a, b = field_of(test), field_of(reference)
         return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))
+
+
+@described
+def mesh_difference(test: HexMesh, reference: HexMesh, *, progress: Progress = None, **options: Any) -> tuple[HexMesh, DifferenceReport]:
+    """The first mesh with test - reference of each field that both have, at its points, as `subvol compare A B -o FILE` writes it.
+
+    Values of the reference are those of its limit at the points, or those of its own points if both meshes have the same points and
+    cells. The report has same_points, whether that is so; outside, the number of points outside the reference, which get the
+    value of its nearest place, and outside_distance, how far the farthest is; and for each of fields max, at and point: the largest
+    difference and where it is.
+
+    {keywords}
+    """
+    with listening(progress) as listener:
+        return _core.mesh_difference(needed(test, HexMesh, "test"), needed(reference, HexMesh, "reference"), listener, **options)
 
 
 def compare(test: Any, reference: Any, **options: Any) -> Any:

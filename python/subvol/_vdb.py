@@ -160,7 +160,7 @@ def read_vdb(path: Path, names: Union[None, str, Sequence[str]] = None) -> list[
 
 
 def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], path: Path, *, codes: Optional[Sequence[float]] = None,
-              tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None) -> None:
+              tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, up: str = "z") -> None:
     """Writes OpenUSD text (`.usda`): a Volume with a field for each grid of floats of `.vdb` files, which are named relative to it; or
     kernels as a ParticleField3DGaussianSplat, with their values as attributes subvol:value:NAME.
 
@@ -168,8 +168,9 @@ def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], pa
     codes:        the time codes; None: 0, 1, …
     tf:           the colour map: a name, or a TransferFunction; None: viridis over the values of the first grid or channel
     opacity_unit: of volumes, the distance that its opacities are for; None: 1/100 of the diagonal, as in pictures
+    up:           the axis of the data that is up, which the stage says: "y" or "z"
 
-    Raises InvalidInput for another extension, no grids, or codes that are not one for each step and ascending; FileError.
+    Raises InvalidInput for another extension, another axis, no grids, or codes that are not one for each step and ascending; FileError.
     """
     steps: list[Any] = list(what) if isinstance(what, (list, tuple)) else [what]
     times = [float(code) for code in (range(len(steps)) if codes is None else codes)]
@@ -179,7 +180,7 @@ def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], pa
             raise InvalidInput("opacity_unit: is of volumes; the opacities of splats are those of the colour map", "opacity_unit")
         ends = [values for step in steps for values in list(step.values.values())[:1] if len(values)]
         low, high = min(float(each.min()) for each in ends), max(float(each.max()) for each in ends)
-        _core.write_usd_splats(path_bytes(path), steps, times, function.knots(low, high))
+        _core.write_usd_splats(path_bytes(path), steps, times, function.knots(low, high), up)
         return
     grids: list[str] = []
     boxes, lows, highs = [], [], []
@@ -196,7 +197,7 @@ def write_usd(what: Union[Path, RbfVolume, Sequence[Union[Path, RbfVolume]]], pa
     unit = opacity_unit
     if unit is None and boxes:
         unit = sum((b - a) ** 2 for a, b in zip(*boxes[0])) ** 0.5 / 100
-    _core.write_usd(path_bytes(path), grids, [path_bytes(step) for step in steps], times, boxes, knots, 1.0 if unit is None else unit)
+    _core.write_usd(path_bytes(path), grids, [path_bytes(step) for step in steps], times, boxes, knots, 1.0 if unit is None else unit, up)
 
 
 def sample_grid(grid: Grid, spacing: float = 0, progress: Progress = None) -> RbfVolume:

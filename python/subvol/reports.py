@@ -10,7 +10,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ApproximateReport", "ControlMeshReport", "FieldError", "FieldMeasure", "FoldFigures", "GridReport", "MendReport", "MeshReport", "PartMeasure",
+__all__ = ["ApproximateReport", "ControlMeshReport", "DifferenceReport", "FieldError", "FieldMeasure", "FoldFigures", "GridReport", "MendReport", "MeshReport", "PartMeasure",
            "PatchMeasure", "ReduceReport", "SeriesReport", "ShapeError", "ShapeReport", "SurfaceReport", "VolumeMeasure", "WaveletReport"]
 
 Place = tuple[float, float, float]
@@ -280,6 +280,23 @@ class CellLeft(TypedDict):
 
     cell: int
     reason: str
+
+
+class LargestDifference(TypedDict):
+    """Of a field, by `mesh_difference`."""
+
+    max: float
+    at: list[float]
+    point: int
+
+
+class DifferenceReport(TypedDict):
+    """By `mesh_difference`."""
+
+    same_points: bool
+    outside: int
+    outside_distance: float
+    fields: dict[str, LargestDifference]
 
 
 class MendReport(TypedDict):

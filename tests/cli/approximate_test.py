@@ -41,6 +41,34 @@ class Approximate(InFolder):
         self.assertIn(finer["cells"], (16, 32, 64))  # sheets across one, two or three directions
         self.assertLess(finer["fields"]["density"]["rms"], .5 * coarse["fields"]["density"]["rms"])
 
+    def test_fog_gets_a_box_of_its_own_and_stays_fog(self):
+        # A ball of fog with a hard edge, which a smooth limit rings at.
+        self.run_ok("vdb", "model:ball:6", "--density", "2-x*x-y*y-z*z", "-o", "fog.vdb", "--resolution", "40", "--quiet")
+        grid = self.run_ok("info", "fog.vdb", "--json").json()["grids"][0]
+        found = self.fit("fog.vdb", "--cells", "10", "-o", "fitted.vtu")
+        self.assertEqual((found["points"], found["cells"]), (1331, 1000))
+        self.assertNotIn("onto", found)
+        about = self.run_ok("info", "fitted.vtu", "--json").json()
+        for end, sign in ((0, -1), (1, 1)):
+            for box, voxels in zip(about["bounds"][end], grid["bounds"][end]):
+                self.assertAlmostEqual(box, voxels + sign * grid["voxel_size"] / 2, places=5)
+        self.assertEqual(about["fields"][0]["min"], 0)
+        self.run_ok("vdb", "fitted.vtu", "--clamp", "-o", "back.vdb", "--resolution", "40", "--quiet")
+        self.assertEqual(self.run_ok("info", "back.vdb", "--json").json()["grids"][0]["min"], 0)
+        # Of a sequence the box is about all frames.
+        self.run_ok("vdb", "model:ball:6", "-o", "s_2.vdb", "--resolution", "20", "--scale", "2", "--quiet")
+        (self.folder / "fog.vdb").rename(self.folder / "s_1.vdb")
+        self.fit("s_#.vdb", "--frames", "1-2", "--cells", "6", "-o", "f_#.vtu")
+        for frame in (1, 2):
+            low, high = self.run_ok("info", f"f_{frame}.vtu", "--json").json()["bounds"]
+            self.assertGreater(min(high) - max(low), 3.9)
+        for words, said in ((["s_1.vdb"], "--cells N"), (["model:ball:4"], "--onto"), (["model:ball:4", "--cells", "3"], "--cells"),
+                            (["s_1.vdb", "--cells", "3", "--onto", "model:ball:4"], "--onto"), (["s_1.vdb", "--cells", "0"], "--cells")):
+            done = subvol("approximate", *words, "-o", "x.vtu", folder=self.folder)
+            self.assertEqual(done.code, 2, words)
+            self.assertRegex(done.err, r"^subvol: [^\n]*\n$")
+            self.assertIn(said, done.err)
+
     def test_a_level_set_is_the_background_below_zero_inside(self):
         self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--sdf", "--resolution", "40", "--quiet")
         grids = self.run_ok("info", "ball.vdb", "--json").json()["grids"]

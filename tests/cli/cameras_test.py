@@ -64,6 +64,34 @@ class Cameras(InFolder):
         for k in (0, 2):  # in the middle of the picture; bounds are of centres, the same distance inside on both sides
             self.assertAlmostEqual(camera["target"][k], (low[k] + high[k]) / 2, places=6)
 
+    def test_data_whose_y_is_up_stand_upright(self):
+        # The same body twice: as it is, and with its z along y.
+        self.make("model", "twist", "--resolution", "4", "-o", "z.vtu")
+        self.make("vdb", "z.vtu", "-o", "z.vdb", "--resolution", "24")
+        self.make("vdb", "z.vtu", "-o", "y.vdb", "--resolution", "24", "--up", "y")
+        for side in ("iso", "front", "top"):
+            z = self.render("z.vdb", "z.exr", "--method", "grid", "--view", side)["camera"]
+            y = self.render("y.vdb", "y.exr", "--method", "grid", "--view", side, "--up", "y")["camera"]
+            for key in ("eye", "target", "up"):
+                turned = [z[key][0], z[key][2], -z[key][1]]
+                for k in range(3):
+                    self.assertAlmostEqual(y[key][k], turned[k], places=6, msg=(side, key))
+        self.assertEqual(self.render("y.vdb", "y.exr", "--method", "grid", "--view", "+z", "--up", "y")["camera"]["up"], [0, 1, 0])
+        # A turntable turns about that axis: the eye stays at its height.
+        self.render("y.vdb", "turn.png", "--method", "grid", "--turntable", "2", "--up", "y")
+        # Views of a session, too, and what a page says to its buttons.
+        (self.folder / "turn.json").write_text(json.dumps([{"view": "-x"}, {"view": "iso"}, {"save_state": "state.json"}]))
+        self.make("view", "z.vtu", "--size", "60x40", "--backend", "cpu", "--script", "turn.json", "--screenshot", "a.png", "--up", "y")
+        camera = json.loads((self.folder / "state.json").read_text())["camera"]
+        self.assertEqual(camera["up"], [0, 1, 0])
+        self.assertTrue(all(end > start for end, start in zip(camera["eye"], camera["target"])))  # from +x, +y, +z
+        self.make("page", "z.vtu", "-o", "a.html", "--up", "y", "--no-reference")
+        self.assertIn('"up":"y"', (self.folder / "a.html").read_text())
+        for wrong in (["--up", "w"], ["--up", "y", "--camera", "3,-4,2,0,0,0,0,0,1,35"]):
+            done = subvol("render", "z.vtu", "-o", "a.png", *wrong, folder=self.folder)
+            self.assertEqual(done.code, 2, wrong)
+            self.assertRegex(done.err, r"^subvol: [^\n]*--up[^\n]*\n$")
+
     def test_a_report_is_a_camera_file(self):
         for options in [[], ["--ortho"], ["--view", "-x"], ["--camera", "3,-4,2,0,0,0,0,0,1,35"]]:
             report = self.render("model:ball:6", "a.png", *options)

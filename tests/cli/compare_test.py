@@ -6,7 +6,7 @@ import re
 import struct
 import unittest
 
-from command import CUBE, InFolder, subvol
+from command import CUBE, TWO_FIELDS, X_AND_Z, InFolder, subvol
 
 GREY = 0.25
 
@@ -233,6 +233,63 @@ class Fields(InFolder):
             self.assertLess(figures["new_vertex_rmse"], 0.05)
             self.assertGreater(figures["l2"], 0)
 
+    def test_the_difference_of_two_meshes_is_a_mesh(self):
+        quick = ["--samples", 500, "--resolution", 8]
+        (self.folder / "b.vtk").write_text(TWO_FIELDS)
+        # One corner, at 1,1,1, is 7.25 warmer in A.
+        (self.folder / "a.vtk").write_text(TWO_FIELDS.replace("293 313 313 293 293 313 313 293", "293 313 313 293 293 313 320.25 293"))
+        figures = self.compared("a.vtk", "b.vtk", *quick, "-o", "d.vtu")
+        found = figures["difference"]
+        self.assertEqual((figures["output"], found["same_points"], found["outside"]), ("d.vtu", True, 0))
+        self.assertEqual(found["fields"]["Temp"], {"max": 7.25, "at": [1, 1, 1], "point": 6})
+        self.assertEqual({name: field["max"] for name, field in found["fields"].items()}, {"Temp": 7.25, "Pres": 0, "V": 0})
+        fields = {field["name"]: field for field in self.run_ok("info", "d.vtu", "--json").json()["fields"]}
+        self.assertEqual((fields["Temp"]["min"], fields["Temp"]["max"], fields["V"]["components"]), (0, 7.25, 3))
+        # The difference 7.25 xyz is largest at 1,1,1; some of the random places is near it.
+        self.assertGreater(math.prod(figures["linf_at"]), 0.5)
+        self.assertAlmostEqual(figures["linf"], 7.25 * math.prod(figures["linf_at"]), delta=1e-4)
+        done = self.run_ok("compare", "a.vtk", "b.vtk", *quick, "-o", "d.vtu")
+        self.assertRegex(done.out, r"Temp +differs at most by 7\.25 at point 6 \(1,1,1\)")
+        self.assertRegex(done.out, r"linf +[\d.]+ at 0?\.?\d")
+        # One field, also a computed one.
+        figures = self.compared("a.vtk", "b.vtk", *quick, "-o", "d.vtkhdf", "--field", "2*Temp")
+        self.assertEqual(figures["difference"]["fields"], {"2*Temp": {"max": 14.5, "at": [1, 1, 1], "point": 6}})
+
+    def test_the_difference_from_another_mesh_is_at_the_points_of_the_first(self):
+        # A has 64 points in half of the cube of B, where x + z² is known.
+        grid = """<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3" Origin="0 0 0" Spacing=".2 .2 .2">
+<Piece Extent="0 3 0 3 0 3"><PointData><DataArray Name="x" type="Float64" format="ascii">%s</DataArray></PointData>
+</Piece></ImageData></VTKFile>"""
+        places = [(i * 0.2, k * 0.2) for k in range(4) for _ in range(4) for i in range(4)]
+        (self.folder / "a.vti").write_text(grid % " ".join(repr(x + z * z) for x, z in places))
+        (self.folder / "b.vtk").write_text(X_AND_Z)
+        found = self.compared("a.vti", "b.vtk", "--samples", 500, "--resolution", 8, "-o", "d.vtu")["difference"]
+        self.assertEqual((found["same_points"], found["outside"]), (False, 0))
+        self.assertAlmostEqual(found["fields"]["x"]["max"], 0.36, places=5)
+        self.assertAlmostEqual(found["fields"]["x"]["at"][2], 0.6, places=12)
+        values = self.run_ok("probe", "d.vtu", "--at", "0.2,0.4,0.4", "--json").json()["values"]
+        self.assertAlmostEqual(values[0]["value"], 0.16, places=5)
+        # The other way round most of the points are outside, and people hear of it.
+        done = self.run_ok("compare", "b.vtk", "a.vti", "--samples", 500, "--resolution", 8, "-o", "d.vtu", "--field", "x")
+        self.assertRegex(done.err, r"7 points of A lie outside B, by at most 0\.69")  # √3 · .4
+
+    def test_two_steps_of_one_file(self):
+        for k, warm in enumerate(("313", "319")):
+            (self.folder / "step.vtk").write_text(TWO_FIELDS.replace("293 313 313", f"293 {warm} 313"))
+            self.run_ok("subdivide", "step.vtk", "-o", f"step{k}.vtu", "--levels", 0)
+        (self.folder / "run.pvd").write_text("""<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="step0.vtu"/><DataSet timestep="5" file="step1.vtu"/></Collection></VTKFile>""")
+        quick = ["--samples", 500, "--resolution", 8]
+        for choice in (["--step", 1, "--step-b", 0], ["--step-b", 0], ["--time", 5, "--step-b", 0]):
+            found = self.compared("run.pvd", "run.pvd", *choice, *quick, "-o", "d.vtu")["difference"]
+            self.assertEqual(found["fields"]["Temp"], {"max": 6, "at": [1, 0, 0], "point": 1}, choice)
+        self.assertEqual(self.compared("run.pvd", "run.pvd", "--step", 1, *quick)["linf"], 0)
+        for wrong in ("all", "2", "-1", "x"):
+            done = subvol("compare", "run.pvd", "run.pvd", "--step-b", wrong, folder=self.folder)
+            self.assertEqual(done.code, 2, wrong)
+            self.assertRegex(done.err, r"^subvol: [^\n]*\n$")
+            self.assertIn("--step-b", done.err)
+
     def test_the_seed_chooses_the_places(self):
         def l2(seed, threads):
             return self.compared("model:twist:4", "model:twist:8", "--levels", 1, "--samples", 3000, "--resolution", 16, "--seed",
@@ -289,6 +346,10 @@ class Mistakes(InFolder):
         self.assert_refused("model:ball:2", "model:ball:2", "--heatmap", "h.png", naming=["--heatmap", "pictures"])
         self.assert_refused("model:ball:2", "model:ball:2", "--fail-under", "psnr=1", naming=["psnr", "l2"])
         self.assert_refused("model:ball:2", "model:ball:2", "--fail-under", "hausdorff=1", naming=["hausdorff"])
+        self.assert_refused("a.pfm", "a.pfm", "-o", "d.vtu", naming=["--output", "fields"])
+        self.assert_refused("model:ball:2", "model:ball:2", "-o", "d.csv", naming=["d.csv", ".vtu"])
+        self.assert_refused("model:ball:2", "model:ball:2", "-o", "d.vtu", "--levels", "1", naming=["--output", "--levels"])
+        self.assert_refused("model:ball:2", "model:ball:2", "--step-b", "1", naming=["--step-b", "steps"])
         self.assert_refused("model:ball:2", "model:ball:2", "--iso", "77", "--levels", "0", "--resolution", "8", naming=["77"])
 
 

@@ -169,7 +169,9 @@ def lod(files):
 
 
 def measure(files):
-    files.mesh("part.vtu")
+    for name in ("part.vtu", "run1.vtu", "run2.vtu"):
+        files.mesh(name)
+    files.pvd("run.pvd")
     files.bolts()
 
 

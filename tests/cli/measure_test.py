@@ -9,7 +9,7 @@ import struct
 import unittest
 from pathlib import Path
 
-from command import InFolder, subvol
+from command import TWO_FIELDS, InFolder, subvol
 
 BOX = "model:twist:4"
 POST = Path(os.environ.get("SUBVOL_DATA", "/nowhere")) / "vtkdata_post_tet.vtk"
@@ -51,6 +51,69 @@ class Probe(Refusing):
             self.assertEqual(row["density"] == "", row["inside"] == "0")
         self.run_ok("probe", "model:ball:4", "--line=-2,0,0,2,0,0", "-o", "a.svg", "--quiet")
         self.assertIn("<svg", (self.folder / "a.svg").read_text())
+
+    def test_several_fields_are_chosen_columns_and_curves(self):
+        # On one cell T = 293 + 20x and P = 2000z, V from (1,0,0) to (0,0,2) along z.
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        line = ["probe", "two.vtk", "--line", "0,.5,.25,1,.5,.25", "--count", 5]
+        fields = ["--field", "Temp", "--field", "2*Pres", "--field", "V.z", "--field", "Temp"]
+        done = self.run_ok(*line, *fields, "-o", "a.csv")
+        self.assertNotRegex(done.out, r"V [-\d.]+,")  # of the fields that are not asked for
+        with open(self.folder / "a.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["x", "y", "z", "inside", "cell", "u", "v", "w", "Temp", "2*Pres", "V.z"])
+        for row in rows:
+            self.assertAlmostEqual(float(row["Temp"]), 293 + 20 * float(row["x"]), delta=1e-4)
+            self.assertAlmostEqual(float(row["2*Pres"]), 1000, delta=1e-2)
+            self.assertAlmostEqual(float(row["V.z"]), 0.5, delta=1e-5)
+        self.run_ok(*line, "--field", "Temp", "-o", "a.csv")
+        self.assertEqual((self.folder / "a.csv").read_text().splitlines()[0], "x,y,z,inside,cell,u,v,w,Temp")
+        self.run_ok(*line, "-o", "a.csv")  # all of them, with gradients
+        self.assertIn(",Temp,Temp_dx,Temp_dy,Temp_dz,Pres,", (self.folder / "a.csv").read_text().splitlines()[0])
+        # A curve each, with its name.
+        self.run_ok(*line, *fields, "-o", "a.svg")
+        plot = (self.folder / "a.svg").read_text()
+        for name in ("Temp", "2*Pres", "V.z", "value"):
+            self.assertEqual(plot.count(f">{name}<"), 1, name)
+        # In JSON the first is the chosen one, and all are there; statistics are of these alone.
+        value = self.run_ok(*line, *fields, "--json").json()["values"][0]
+        self.assertAlmostEqual(value["value"], 293, delta=1e-4)
+        self.assertEqual(set(value["fields"]), {"Temp", "2*Pres", "V.z", "Pres", "V"})
+        stats = self.run_ok("probe", "two.vtk", "--stats", *fields, "--json").json()["stats"]["whole"]["fields"]
+        self.assertEqual([field["name"] for field in stats], ["Temp", "2*Pres", "V.z"])
+        self.assertAlmostEqual(stats[1]["mean"], 2000, delta=1e-3)
+        # Computed before the body is cut and moved, as one field is.
+        moved = self.run_ok("probe", "two.vtk", "--at", "1.5,.5,.75", "--warp", "V*1", "--field", "Pres", "--field", "x", "--json").json()
+        self.assertAlmostEqual(moved["values"][0]["fields"]["x"]["value"], 0.75, delta=1e-4)
+        done = subvol("probe", "two.vtk", "--at", "0,0,0", "--field", "Temp", "--field", "none", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertRegex(done.err, r"^subvol: [^\n]*none[^\n]*Temp, Pres, V[^\n]*\n$")
+        # Other commands take one.
+        self.assertEqual(subvol("render", "two.vtk", "-o", "a.png", "--field", "Temp", "--field", "Pres", folder=self.folder).code, 2)
+
+    def test_several_fields_of_bricks_and_of_steps(self):
+        for k, warm in enumerate((313, 333)):
+            (self.folder / "step.vtk").write_text(TWO_FIELDS.replace("313", str(warm)))
+            self.run_ok("subdivide", "step.vtk", "-o", f"step{k}.vtu", "--levels", 1)
+        (self.folder / "run.pvd").write_text("""<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="step0.vtu"/><DataSet timestep="5" file="step1.vtu"/></Collection></VTKFile>""")
+        places = ["--at", ".5,.5,.25", "--at", "1,.5,.5", "--field", "Temp", "--field", "Pres/1000"]
+        self.run_ok("probe", "run.pvd", *places, "--step", "all", "-o", "a.csv")
+        with open(self.folder / "a.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["step", "time", "of", "Temp", "Pres/1000"])
+        for row, temp, pres in zip(rows, (303, 313, 313, 333), (0.5, 1, 0.5, 1)):
+            self.assertAlmostEqual(float(row["Temp"]), temp, delta=1e-3)
+            self.assertAlmostEqual(float(row["Pres/1000"]), pres, delta=1e-5)
+        self.run_ok("probe", "run.pvd", *places, "--step", "all", "-o", "a.svg")
+        for name in ("Temp at 0.5,0.5,0.25", "Pres/1000 at 1,0.5,0.5"):
+            self.assertEqual((self.folder / "a.svg").read_text().count(f">{name}<"), 1, name)
+        self.run_ok("probe", "run.pvd", "--stats", "--field", "Temp", "--field", "Pres", "--step", "all", "-o", "b.svg")
+        self.assertEqual((self.folder / "b.svg").read_text().count(">Pres max<"), 1)
+        self.run_ok("split", "step1.vtu", "-o", "b.bricks", "--bricks", 2)
+        found = self.run_ok("probe", "b.bricks", "--at", ".5,.5,.25", "--field", "Temp", "--field", "V.z", "-o", "b.csv", "--json").json()
+        self.assertEqual((self.folder / "b.csv").read_text().splitlines()[0], "x,y,z,inside,cell,u,v,w,Temp,V.z")
+        self.assertAlmostEqual(found["values"][0]["fields"]["V.z"]["value"], 0.5, delta=1e-4)
 
     def test_tables_of_places_with_and_without_a_header(self):
         for text in ("0,0,0\n.1;.2;.3\n", "# places\nid z y x\n7 0 0 0\n8 .3 .2 .1\n", "\ufeffx,y,z\r\n0,0,0\r\n.1,.2,.3\r\n"):

@@ -250,6 +250,17 @@ class InTheBrowser(unittest.TestCase):
         self.assertEqual(self.browser.requests(), [])
         self.assertEqual(self.browser.complaints(), [])
 
+    def test_a_side_is_upright_where_y_is_up(self):
+        self.command("page", "model:ball:4", "-o", "b.html", "--up", "y")
+        self.open("b.html")
+        for view, up, eye in (("0,0,1", [0, 1, 0], [0, 0, 1]), ("1,-1,1", [0, 1, 0], [1, 1, 1]), ("0,1,0", [0, 0, -1], [0, 1, 0])):
+            self.browser.evaluate(f"subvolPage.camera.lookFrom('{view}'.split(',').map(Number))")
+            camera = self.browser.evaluate("({up: subvolPage.camera.up, eye: subvolPage.camera.eye})")
+            self.assertEqual([value + 0.0 for value in camera["up"]], up, view)
+            length = sum(value * value for value in camera["eye"]) ** 0.5
+            for found, wanted in zip(camera["eye"], eye):
+                self.assertAlmostEqual(found / length, wanted / sum(value * value for value in eye) ** 0.5, places=6)
+
     def choose(self, element, value):
         self.browser.evaluate(f"(s => {{ s.value = '{value}'; s.dispatchEvent(new Event('change')); }})(document.getElementById('{element}'))")
 

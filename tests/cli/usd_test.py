@@ -46,6 +46,17 @@ class Usd(InFolder):
         positions = next(line for line in text.splitlines() if "point3f[] positions" in line)
         self.assertEqual(positions.count("("), report["points"][0])
 
+    def test_a_stage_says_which_axis_is_up(self):
+        subvol("points", "model:ball:4", "-o", "ball.svk", folder=self.folder)
+        for name, words, axis in (("a", [], "Z"), ("b", ["--up", "z"], "Z"), ("c", ["--up", "y"], "Y")):
+            for source in ("model:ball:4", "ball.svk"):
+                voxels = ["--resolution", "8"] if source.startswith("model") else []
+                self.assertEqual(self.run_command(source, "-o", f"{name}.usda", *voxels, *words).code, 0)
+                self.assertIn(f'\n    upAxis = "{axis}"\n', self.text(f"{name}.usda"))
+        done = self.run_command("ball.svk", "-o", "x.usda", "--up", "x")
+        self.assertEqual(done.code, 2)
+        self.assertRegex(done.err, r"^subvol: --up: [^\n]*y or z[^\n]*\n$")
+
     def test_what_is_no_stage_is_refused(self):
         subvol("points", "model:ball:4", "-o", "ball.svk", folder=self.folder)
         subvol("vdb", "model:ball:4", "-o", "ball.vdb", "--resolution", "8", folder=self.folder)

@@ -76,6 +76,43 @@ class Grids(InFolder):
         refused = subvol("render", "a.vdb", "-o", "a.png", "--field", "sped", folder=self.folder)
         self.assertEqual((refused.code, "did you mean speed?" in refused.err), (2, True), refused.err)
 
+    def test_voxels_near_the_background_are_left_out(self):
+        # On one cell T - 293 = 20 x: of the layers along x, those up to the tolerance go.
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        fields = ["--fields", "warm=Temp-293,V", "--resolution", 20]
+
+        def grids(*options, name="a.vdb"):
+            return {grid["name"]: grid for grid in self.run_ok("vdb", "two.vtk", "-o", name, *fields, *options, "--json").json()["grids"]}
+
+        whole = grids(name="whole.vdb")["warm"]["active_voxels"]
+        layers = round(whole ** (1 / 3))
+        self.assertEqual(layers ** 3, whole)
+        voxel = self.run_ok("info", "whole.vdb", "--json").json()["grids"][0]["voxel_size"]
+        gone = sum(20 * voxel * i <= 6.5 for i in range(layers))
+        self.assertGreater(gone, 5)
+        left = grids("--prune", 6.5)["warm"]
+        self.assertEqual(left["active_voxels"], (layers - gone) * layers ** 2)
+        self.assertGreater(left["min"], 6.5)
+        # The length of V = (1 - z, 0, 2 z) is never below 2 / √5.
+        self.assertEqual(grids("--prune", .89)["V"]["active_voxels"], whole)
+        self.assertLess(grids("--prune", .95)["V"]["active_voxels"], whole)
+        # In shares, in parts, in frames and of kernels it is the same.
+        for part in (1, 2):
+            self.run_ok("vdb", "two.vtk", "-o", f"p{part}.vdb", *fields, "--prune", 6.5, "--part", f"{part}/2")
+        self.run_ok("join", "p1.vdb", "p2.vdb", "-o", "joined.vdb")
+        joined = self.run_ok("info", "joined.vdb", "--json").json()["grids"]
+        self.assertEqual([grid["active_voxels"] for grid in joined if grid["name"] == "warm"], [left["active_voxels"]])
+        done = self.run_ok("vdb", "two.vtk", "-o", "m.vdb", *fields, "--prune", 6.5, "--memory", "1G", "--json").json()
+        self.assertEqual(next(grid for grid in done["grids"] if grid["name"] == "warm")["active_voxels"], left["active_voxels"])
+        # Level sets stay as they are.
+        sizes = [self.run_ok("vdb", "model:ball:4", "-o", "s.vdb", "--resolution", 16, "--sdf", *words, "--json").json()["grids"][1]["active_voxels"]
+                 for words in ([], ["--prune", 0.1])]
+        self.assertEqual(sizes[0], sizes[1])
+        for wrong, said in (("-1", "out of range"), ("x", "--prune"), ("99", "leaves no voxel")):
+            done = subvol("vdb", "two.vtk", "-o", "x.vdb", *fields, f"--prune={wrong}", folder=self.folder)
+            self.assertEqual(done.code, 2, wrong)
+            self.assertRegex(done.err, rf"^subvol: [^\n]*{said}[^\n]*\n$")
+
     def test_up_and_scale_turn_and_stretch(self):
         write_box(self.folder / "long.mesh", 0, 4)
         self.run_ok("vdb", "long.mesh", "-o", "b.vdb", "--resolution", 16, "--up", "y", "--scale", 10, "--density", "z")

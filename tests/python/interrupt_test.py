@@ -48,7 +48,7 @@ def calls(ball):
             "measure": lambda p: subvol.measure(ball, progress=p), "part": lambda p: subvol.measure(ball, only="half:0,0,0,1,0,0", progress=p),
             "slice": lambda p: subvol.slice(ball, point=(0, 0, 0), normal=(0, 0, 1), progress=p), "surface": lambda p: subvol.surface(ball, iso=.3, progress=p),
             "streamlines": lambda p: subvol.streamlines(flow, "U", progress=p), "check_folds": lambda p: subvol.check_folds(ball, progress=p),
-            "mend_folds": lambda p: subvol.mend_folds(ball, progress=p), "approximate": lambda p: subvol.approximate(ball, fine, progress=p),
+            "mend_folds": lambda p: subvol.mend_folds(ball, progress=p), "mesh_difference": lambda p: subvol.mesh_difference(fine, ball, progress=p), "approximate": lambda p: subvol.approximate(ball, fine, progress=p),
             "series": lambda p: list(subvol.approximate_series(ball, [fine], progress=p)),
             "control_mesh": lambda p: subvol.control_mesh(around.points, around.triangles, cells=4, progress=p),
             "fit_shape": lambda p: subvol.fit_shape(ball, around.points, around.triangles, progress=p), "sample": lambda p: subvol.sample(ball, per_edge=2, progress=p),

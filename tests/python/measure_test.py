@@ -33,6 +33,28 @@ def test_outside_there_is_nothing(ball):
     assert len(subvol.probe(ball, at=[]).cells) == 0
 
 
+def test_the_difference_of_two_meshes_is_that_of_numpy():
+    fine, coarse = grid_of(5), grid_of(3)
+    a = fine.with_fields({"T": fine.points[:, 0] ** 2, "u": fine.points * 2, "other": fine.points[:, 2]})
+    b = fine.with_fields({"u": fine.points, "T": fine.points[:, 1]})
+    found, report = subvol.mesh_difference(a, b)
+    expected = fine.points[:, 0] ** 2 - fine.points[:, 1]
+    assert report["same_points"] and list(found.fields) == ["T", "u"]
+    np.testing.assert_array_equal(found.fields["T"], expected)
+    np.testing.assert_array_equal(found.fields["u"], fine.points)
+    point = int(np.abs(expected).argmax())
+    assert report["fields"]["T"] == {"max": abs(expected[point]), "at": fine.points[point].tolist(), "point": point}
+    assert report["fields"]["u"]["max"] == np.linalg.norm(fine.points, axis=1).max()
+    # On another mesh a linear field is met.
+    found, report = subvol.mesh_difference(a, coarse.with_fields({"T": coarse.points[:, 1]}))
+    assert not report["same_points"] and report["outside"] == 0
+    np.testing.assert_allclose(found.fields["T"], expected, atol=1e-5)
+    with pytest.raises(subvol.InvalidInput, match="no field in common"):
+        subvol.mesh_difference(a, coarse.with_fields({"S": coarse.points[:, 1]}))
+    with pytest.raises(TypeError, match="reference"):
+        subvol.mesh_difference(a, 3)
+
+
 def test_errors_of_kernels_fall_with_their_number(ball: subvol.HexMesh) -> None:
     points = subvol.sample(ball, "density")
     error = subvol.points_error(points, ball, "density")

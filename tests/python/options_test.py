@@ -10,7 +10,7 @@ import pytest
 import subvol
 from subvol import _core, _options
 
-CALLS = ["approximate", "approximate_series", "check_folds", "check_folds_between", "control_mesh", "evaluate_limit", "fit", "fit_shape", "from_vtk", "measure", "mend_folds", "page", "points_error", "probe", "rasterize", "read_mesh", "reduce", "render", "sample",
+CALLS = ["approximate", "approximate_series", "check_folds", "check_folds_between", "control_mesh", "evaluate_limit", "fit", "fit_shape", "from_vtk", "measure", "mend_folds", "mesh_difference", "page", "points_error", "probe", "rasterize", "read_mesh", "reduce", "render", "sample",
          "slice", "streamlines", "subdivide", "surface", "write_points", "write_series", "write_vdb", "write_wavelets"]
 
 

@@ -57,6 +57,33 @@ def test_what_is_not_linear_is_that_of_the_place(bar: subvol.HexMesh) -> None:
     assert inside.all() and values[0] == pytest.approx(expected, rel=1e-6)
 
 
+def scaled_jacobians(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """The least at the corners of each cell: the determinant of the unit vectors along its three edges there."""
+    edges = {0: (1, 3, 4), 1: (2, 0, 5), 2: (3, 1, 6), 3: (0, 2, 7), 4: (7, 5, 0), 5: (4, 6, 1), 6: (5, 7, 2), 7: (6, 4, 3)}
+    found = []
+    for corner, ends in edges.items():
+        sides = np.stack([points[cells[:, end]] - points[cells[:, corner]] for end in ends], axis=1)
+        found.append(np.linalg.det(sides / np.linalg.norm(sides, axis=2, keepdims=True)))
+    return np.min(found, axis=0)
+
+
+def test_quality_of_cells_is_that_of_numpy(bar: subvol.HexMesh) -> None:
+    rng = np.random.default_rng(2)
+    mesh = subvol.HexMesh(bar.points + rng.normal(scale=.1, size=bar.points.shape), bar.cells)
+    quality = scaled_jacobians(mesh.points, mesh.cells)
+    assert mesh.report()["min_scaled_jacobian"] == pytest.approx(quality.min(), abs=1e-12)
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    lengths = np.stack([np.linalg.norm(mesh.points[mesh.cells[:, a]] - mesh.points[mesh.cells[:, b]], axis=1) for a, b in pairs])
+    aspect = lengths.max(axis=0) / lengths.min(axis=0)
+    for name, values in (("quality", quality), ("aspect", aspect), ("1-quality", 1 - quality)):
+        sums, counts = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))  # at points the means over the cells there
+        np.add.at(sums, mesh.cells.reshape(-1), np.repeat(values, 8))
+        np.add.at(counts, mesh.cells.reshape(-1), 1)
+        np.testing.assert_allclose(subvol.quantity(mesh, name), sums / counts, atol=1e-12, err_msg=name)
+    middle = float(np.median(quality))
+    assert len(subvol.only(mesh, f"where:quality<{middle!r}").cells) == (quality < middle).sum()
+
+
 def test_warp_and_regions(bar: subvol.HexMesh) -> None:
     np.testing.assert_allclose(subvol.warp(bar, "D", 2).points[:, 0], bar.points[:, 0] + 2 * bar.points[:, 2])
     longest = np.abs(subvol.warp(bar, "D", None).points - bar.points).max()

@@ -67,6 +67,7 @@ def test_reports_have_the_types_that_they_say(tmp_path, ball):
     folded = ball.points.copy()
     folded[ball.cells[0, 6]] += [2, 2, 2]
     check(subvol.mend_folds(subvol.HexMesh(folded, ball.cells, crease_angle="none"), tests=1)[2], reports.MendReport, "mend_folds of a folded mesh")
+    check(subvol.mesh_difference(fine, ball)[1], reports.DifferenceReport, "mesh_difference")
     check(subvol.reduce(ball, rmse=.1)[1], reports.ReduceReport, "reduce")
     check(subvol.write_wavelets(fine, tmp_path / "a.svw"), reports.WaveletReport, "write_wavelets")
     check(subvol.write_series([ball, ball], tmp_path / "b.svw"), reports.SeriesReport, "write_series")

@@ -100,6 +100,17 @@ def test_kernels_are_gaussian_splats(tmp_path, ball):
         write_usd(kernels, tmp_path / "c.usda", opacity_unit=1)
 
 
+def test_a_stage_says_which_axis_is_up(tmp_path, ball):
+    subvol.write_vdb(ball, tmp_path / "a.vdb", resolution=8)
+    for what in (tmp_path / "a.vdb", subvol.sample(ball)):
+        subvol.write_usd(what, tmp_path / "a.usda", up="y")
+        assert '\n    upAxis = "Y"\n' in (tmp_path / "a.usda").read_text()
+        with pytest.raises(subvol.InvalidInput, match="y or z"):
+            subvol.write_usd(what, tmp_path / "a.usda", up="x")
+    with pytest.raises(subvol.InvalidInput, match="up"):
+        subvol.write_usd(tmp_path / "a.vdb", tmp_path / "a.usda", up="w")
+
+
 def test_what_is_no_stage_is_refused(tmp_path, ball):
     subvol.write_vdb(ball, tmp_path / "a.vdb", resolution=10)
     with pytest.raises(subvol.InvalidInput, match="unknown extension"):

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include <openvdb/tools/Prune.h>
 
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -67,6 +70,37 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
     floats->setName(name);
     set_frame(*floats, data.report().frame);
     return make_vdb_grid(floats);
+}
+
+namespace {
+
+/// distance: of two values
+template <class Grid, class Distance>
+void deactivate_near(Grid& grid, double tolerance, const Distance& distance) {
+    const auto background = grid.background();
+    for (auto at = grid.beginValueOn(); at; ++at) {
+        if (!(distance(*at, background) <= tolerance)) continue;
+        at.setValue(background);
+        at.setActiveState(false);
+    }
+    openvdb::tools::pruneInactive(grid.tree());
+}
+
+}  // namespace
+
+void prune_voxels(VdbGrid& grid, double tolerance) {
+    const VdbData& data = VdbData::of(grid);
+    if (data.report().level_set) return;
+    if (data.floats) {
+        deactivate_near(*data.floats, tolerance, [](float a, float b) { return std::abs(double{a} - double{b}); });
+    } else if (auto* vectors = dynamic_cast<openvdb::Vec3SGrid*>(data.grid.get())) {
+        deactivate_near(*vectors, tolerance, [](const openvdb::Vec3s& a, const openvdb::Vec3s& b) {
+            return (openvdb::Vec3d(a) - openvdb::Vec3d(b)).length();
+        });
+    } else {
+        return;
+    }
+    grid = make_vdb_grid(data.grid);
 }
 
 void clamp_voxels(VdbGrid& grid, const FieldRange& range) {

@@ -269,6 +269,7 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
                   {"look", name_of(options.look)},
                   {"background", json_of(options.background)},
                   {"camera", camera_json(options.camera)},
+                  {"up", std::string(name_of(options.up))},
                   {"opacityUnit", unit},
                   {"bounds", {json_of(box.lower), json_of(box.upper)}},
                   {"light", {{"colors", light_json(Shading{})}, {"plain", light_json(plain_shading())}}},

@@ -28,12 +28,14 @@ class Camera {
     this.ortho = ortho / this.data.size;
   }
 
-  // Looks from a side at the whole box.
+  // Looks from a side at the whole box, with the axis up that is up in the data; along it, what is y where z is up.
   lookFrom(direction) {
-    const d = unitVector(direction), distance = 0.55 / Math.sin(this.fovy * Math.PI / 360);
+    const turned = { x: ([x, y, z]) => [z, y, -x], y: ([x, y, z]) => [x, z, -y], z: (v) => v }[this.data.head.up];
+    const iso = direction.every((v) => v !== 0), axis = turned([0, 0, 1]);
+    const d = unitVector(iso ? turned(direction) : direction), distance = 0.55 / Math.sin(this.fovy * Math.PI / 360);
     this.target = [0, 0, 0];
     this.eye = d.map((v) => v * distance);
-    this.up = Math.abs(d[2]) > 0.99 ? [0, 1, 0] : [0, 0, 1];
+    this.up = Math.abs(dot(d, axis)) > 0.99 ? turned([0, 1, 0]) : axis;
     if (this.ortho) this.ortho = 1.1;
   }
 

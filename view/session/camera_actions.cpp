@@ -69,7 +69,7 @@ void fit(Session& session, const Json& wanted) {
 void view(Session& session, const Json& side) {
     const std::string name = word_of(side, kSides);
     const bool parallel = session.state.camera.ortho_height > 0;
-    const Camera named = parse_camera(name, session.body->box, aspect_of(session));
+    const Camera named = parse_camera(name, session.body->box, aspect_of(session), session.state.up);
     const Optics optics = optics_of(session.state, *session.body);
     const auto points = points_in_view(session, optics);
     Camera next = points.empty() ? named : fit_camera_to_points(named, points, aspect_of(session));

@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "arithmetic.h"
+#include "cell_quality.h"
 #include "field_functions.h"
 #include "limit_gradient.h"
 #include "quantity_source.h"
@@ -162,10 +163,12 @@ public:
         return arithmetic(text, begin, depth);
     }
 
-    /// What a name alone means: a field, a component of a field, or a function of tensors where it has one that it can be of.
+    /// What a name alone means: a field, a component of a field, a measure of the cells, or a function of tensors where it has
+    /// one that it can be of.
     [[nodiscard]] std::optional<Attribute> name(std::string_view text) const {
         if (auto field = detail::named_field(mesh_, text)) return field;
         if (auto component = component_of_field(text)) return component;
+        if (auto quality = detail::cell_quality(mesh_, text)) return quality;
         const detail::TensorFunction* function = detail::find_tensor_function(our_word(text));
         const Attribute* tensor = function != nullptr && !function->sizes.empty() ? only_tensor() : nullptr;
         return tensor == nullptr ? std::nullopt : std::optional(applied(*tensor, *function));

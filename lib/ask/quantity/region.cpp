@@ -187,6 +187,10 @@ std::vector<std::uint8_t> RegionCells::in(const Region& region) {
         case Region::Kind::Where: {
             const Attribute values = select_field(mesh_, region.quantity()).scalar;
             parallel_each(inside.size(), [&](std::size_t c) {
+                if (values.constant) {
+                    inside[c] = values.cells[c] != 0;
+                    return;
+                }
                 inside[c] = std::ranges::count_if(mesh_.cells[c], [&](Index p) { return values.values[p] != 0; }) >= 4;
             });
             break;

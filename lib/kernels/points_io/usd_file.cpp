@@ -90,11 +90,12 @@ std::string asset(const std::filesystem::path& file, const std::filesystem::path
 /// Writes the lines of a stage with one prim in its root.
 class Stage {
 public:
-    Stage(const std::filesystem::path& path, std::vector<double> codes)
+    Stage(const std::filesystem::path& path, std::vector<double> codes, UpAxis up)
         : out_(path), codes_(std::move(codes)), root_(identifier(path.stem().string())) {
         line("#usda 1.0\n(");
         line("    defaultPrim = \"" + root_ +
-             "\"\n    doc = \"Written by OpenSubVol\"\n    metersPerUnit = 1\n    upAxis = \"Z\"");
+             "\"\n    doc = \"Written by OpenSubVol\"\n    metersPerUnit = 1\n    upAxis = \"" + (up == UpAxis::Y ? "Y" : "Z") +
+             "\"");
         if (moves()) {
             line("    startTimeCode = " + number(codes_.front()) + "\n    endTimeCode = " + number(codes_.back()) +
                  "\n    timeCodesPerSecond = 24");
@@ -138,7 +139,8 @@ private:
 };
 
 /// Refuses a volume that cannot be written before its file is begun.
-void check(const std::filesystem::path& path, std::size_t steps, std::span<const double> codes) {
+void check(const std::filesystem::path& path, std::size_t steps, std::span<const double> codes, UpAxis up) {
+    if (up == UpAxis::X) throw Error(ErrorCode::InvalidInput, "OpenUSD has no stages whose x is up", "up", "y or z");
     if (path.extension() != ".usda") throw Error(ErrorCode::InvalidInput, "has an unknown extension", path.string(), ".usda");
     if (steps == 0 || steps != codes.size() || !std::ranges::is_sorted(codes, std::ranges::less_equal()))
         throw Error(ErrorCode::InvalidInput,
@@ -151,14 +153,14 @@ void check(const std::filesystem::path& path, std::size_t steps, std::span<const
 void write_usd(const std::filesystem::path& path, const UsdVolume& volume) {
     std::vector<double> codes;
     for (const UsdStep& step : volume.steps) codes.push_back(step.code);
-    check(path, volume.steps.size(), codes);
+    check(path, volume.steps.size(), codes, volume.up);
     if (volume.grids.empty()) throw Error(ErrorCode::InvalidInput, "there are no grids", path.string());
     validate(volume.colors);
     std::vector<std::string> names;
     for (const UsdGrid& grid : volume.grids) names.push_back(grid.name);
     names = identifiers(names);
     const TransferFunction& map = volume.colors;
-    Stage stage(path, codes);
+    Stage stage(path, codes, volume.up);
     stage.begin("Volume", "volume");
     stage.put("float3[] extent", [&](std::size_t step) { return box(volume.steps[step].extent); });
     for (const std::string& name : names) stage.put("rel field:" + name + " = </" + stage.root() + "/volume/" + name + ">");
@@ -182,8 +184,8 @@ void write_usd(const std::filesystem::path& path, const UsdVolume& volume) {
 }
 
 void write_usd(const std::filesystem::path& path, std::span<const RbfVolume> steps, std::span<const double> codes,
-               const TransferFunction& colors) {
-    check(path, steps.size(), codes);
+               const TransferFunction& colors, UpAxis up) {
+    check(path, steps.size(), codes, up);
     validate(colors);
     std::vector<std::string> channels;
     for (const RbfVolume& volume : steps) {
@@ -201,7 +203,7 @@ void write_usd(const std::filesystem::path& path, std::span<const RbfVolume> ste
             return list(gaussians[step].size(), [&](std::size_t i) { return text_of(gaussians[step][i]); });
         };
     };
-    Stage stage(path, {codes.begin(), codes.end()});
+    Stage stage(path, {codes.begin(), codes.end()}, up);
     stage.begin("ParticleField3DGaussianSplat", "splats");
     stage.put("float3[] extent", [&](std::size_t step) {
         Box extent;

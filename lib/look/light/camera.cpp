@@ -26,14 +26,20 @@ namespace subvol {
 using namespace detail;
 namespace {
 
-std::optional<Vec3> view_direction(std::string_view name) {
-    if (name == "+x" || name == "right") return Vec3(-1, 0, 0);
-    if (name == "-x" || name == "left") return Vec3(1, 0, 0);
-    if (name == "+y" || name == "back") return Vec3(0, -1, 0);
-    if (name == "-y" || name == "front") return Vec3(0, 1, 0);
-    if (name == "+z" || name == "top") return Vec3(0, 0, -1);
-    if (name == "-z" || name == "bottom") return Vec3(0, 0, 1);
-    if (name == "iso") return Vec3(-1, 1, -1);
+std::optional<Vec3> view_direction(std::string_view name, UpAxis up) {
+    if (name == "+x") return Vec3(-1, 0, 0);
+    if (name == "-x") return Vec3(1, 0, 0);
+    if (name == "+y") return Vec3(0, -1, 0);
+    if (name == "-y") return Vec3(0, 1, 0);
+    if (name == "+z") return Vec3(0, 0, -1);
+    if (name == "-z") return Vec3(0, 0, 1);
+    if (name == "right") return turned_upright({-1, 0, 0}, up);
+    if (name == "left") return turned_upright({1, 0, 0}, up);
+    if (name == "back") return turned_upright({0, -1, 0}, up);
+    if (name == "front") return turned_upright({0, 1, 0}, up);
+    if (name == "top") return turned_upright({0, 0, -1}, up);
+    if (name == "bottom") return turned_upright({0, 0, 1}, up);
+    if (name == "iso") return turned_upright({-1, 1, -1}, up);
     return std::nullopt;
 }
 
@@ -180,9 +186,9 @@ double View::ray_end(double x_px, double y_px) const {
     return double{ends_->depths[pixel_index(ends_->width, at(x_px, width_, ends_->width), at(y_px, height_, ends_->height))]};
 }
 
-Camera parse_camera(const std::string& text, const Box& box, double aspect) {
+Camera parse_camera(const std::string& text, const Box& box, double aspect, UpAxis up) {
     constexpr double kViewFovyDeg = 30;
-    if (const auto direction = view_direction(text)) return fit_camera(box, *direction, kViewFovyDeg, aspect);
+    if (const auto direction = view_direction(text, up)) return fit_camera(box, *direction, kViewFovyDeg, aspect, up);
     Camera camera;
     if (const auto numbers = parse_numbers(text)) {
         camera = camera_from_numbers(*numbers);

@@ -34,9 +34,11 @@ inline std::array<Vec3, 3> camera_axes(const Vec3& forward_any_length, const Vec
     return {right, glm::cross(right, forward), forward};
 }
 
-inline Vec3 upright_for(const Vec3& direction) {
-    const Vec3 d = glm::normalize(direction);
-    return std::abs(d.z) > 0.999 ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+/// What is up in the picture of a view: the axis that is up, unless the view is along it.
+inline Vec3 upright_for(const Vec3& direction, UpAxis up = UpAxis::Z) {
+    const Vec3 axis = turned_upright(Vec3(0, 0, 1), up);
+    const bool along = std::abs(glm::dot(glm::normalize(direction), axis)) > 0.999;
+    return along ? turned_upright(Vec3(0, 1, 0), up) : axis;
 }
 
 }  // namespace subvol::detail

@@ -78,12 +78,19 @@ Camera fit(const Camera& camera, std::span<const Vec3> points, const Box& box, d
 
 }  // namespace
 
-Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg, double aspect) {
+Vec3 turned_upright(const Vec3& v, UpAxis up) {
+    if (up == UpAxis::X) return {v.z, v.y, -v.x};
+    if (up == UpAxis::Y) return {v.x, v.z, -v.y};
+    return v;
+}
+
+Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg, double aspect, UpAxis up) {
     require(finite(direction) && direction != Vec3(0.0), "the direction of view is zero or not finite");
     require_box(box);
     const Vec3 back = std::max(box.diagonal(), 1.0) * glm::normalize(direction);
-    return fit_camera({.eye = box.center() - back, .target = box.center(), .up = upright_for(direction), .fovy_deg = fovy_deg},
-                      box, aspect);
+    return fit_camera(
+        {.eye = box.center() - back, .target = box.center(), .up = upright_for(direction, up), .fovy_deg = fovy_deg}, box,
+        aspect);
 }
 
 Camera fit_camera(const Camera& camera, const Box& box, double aspect) {

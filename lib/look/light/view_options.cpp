@@ -60,6 +60,9 @@ std::vector<Option> options_of(ViewOptions& options) {
             .offer({"+x", "-x", "+y", "-y", "+z", "-z", "iso", "front", "back", "left", "right", "top", "bottom"})
             .help("SIDE", "the side to look from: +x -x +y -y +z -z iso, front (-y) back left right top bottom")
             .instead_of({"camera"}),
+        Option("up", options.up)
+            .help("AXIS", "the axis of the data that is up, in iso, front and all other views: x, y or z")
+            .instead_of({"camera"}),
         Option("fit", options.fit).help("move the camera along its line of sight until the whole box is in the picture"),
         Option("ortho", options.orthographic)
             .help("use an orthographic camera, as high as the box needs or as the JSON file's ortho_height"),
@@ -70,9 +73,9 @@ std::vector<Option> options_of(ViewOptions& options) {
                   ".mp4, .webm and .gif write a video (with the program ffmpeg)")};
 }
 
-Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect) {
+Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect, UpAxis up) {
     try {
-        return parse_camera(text, box, aspect);
+        return parse_camera(text, box, aspect, up);
     } catch (const Error& error) {
         const std::string where = error.where().empty() ? "" : error.where() + ": ";
         throw Error(error.code(), where + error.message(), option, error.allowed());
@@ -103,8 +106,8 @@ Facts facts_of(const Camera& camera) {
 
 Camera find_camera(const ViewOptions& options, const Box& box, std::span<const Vec3> points, double aspect, OptionNames names) {
     const bool named = !options.camera.has_value();
-    Camera camera =
-        camera_of_option(option_name(named ? "view" : "camera", names), options.camera.value_or(options.view), box, aspect);
+    Camera camera = camera_of_option(option_name(named ? "view" : "camera", names), options.camera.value_or(options.view), box,
+                                     aspect, options.up);
     const bool made_orthographic = options.orthographic && camera.ortho_height == 0;
     if (made_orthographic) camera = orthographic_camera(camera, box, aspect);
     // A named view shows the whole box, so all pictures of its turntable do.

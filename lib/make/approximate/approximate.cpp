@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <string>
 
 #include "data_field.h"
 #include "fitter.h"
@@ -89,6 +91,36 @@ Approximation approximate(const HexMesh& onto, const HexMesh& samples, const App
         }
         parts = std::move(split.parts);
     }
+}
+
+HexMesh mesh_of_box(const Box& box, int cells) {
+    constexpr int kMost = 1000;
+    if (cells < 1 || cells > kMost)
+        throw Error(ErrorCode::InvalidInput, std::to_string(cells) + " cells along the longest side", "cells", "1 to 1000");
+    const Vec3 size = box.empty() ? Vec3(0.0) : box.size();
+    if (!(std::min({size.x, size.y, size.z}) > 0)) throw Error(ErrorCode::InvalidInput, "has no volume", "box", "three sides");
+    const double side = std::max({size.x, size.y, size.z}) / cells;
+    std::array<Index, 3> count;
+    for (int k = 0; k < 3; ++k)
+        count[static_cast<std::size_t>(k)] = static_cast<Index>(std::max(1.0, std::round(size[k] / side)));
+    const auto number = [&](Index i, Index j, Index k) { return (k * (count[1] + 1) + j) * (count[0] + 1) + i; };
+    HexMesh mesh;
+    for (Index k = 0; k <= count[2]; ++k) {
+        for (Index j = 0; j <= count[1]; ++j) {
+            for (Index i = 0; i <= count[0]; ++i)
+                mesh.points.push_back(box.lower + size * (Vec3(i, j, k) / Vec3(count[0], count[1], count[2])));
+        }
+    }
+    for (Index k = 0; k < count[2]; ++k) {
+        for (Index j = 0; j < count[1]; ++j) {
+            for (Index i = 0; i < count[0]; ++i) {
+                mesh.cells.push_back({number(i, j, k), number(i + 1, j, k), number(i + 1, j + 1, k), number(i, j + 1, k),
+                                      number(i, j, k + 1), number(i + 1, j, k + 1), number(i + 1, j + 1, k + 1),
+                                      number(i, j + 1, k + 1)});
+            }
+        }
+    }
+    return mesh;
 }
 
 std::vector<Vec3> places_in_cells(const HexMesh& mesh, int per_edge, const LimitOptions& options) {

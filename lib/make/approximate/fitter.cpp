@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -338,9 +339,12 @@ struct Fitter::Parts {
         for (std::size_t k = 0; k < found.size(); ++k) found[k] += trend.at(positions[k]);
         for (std::size_t p = 0; p < x.size(); ++p)
             x[p] += topology.point_edges[p].empty() ? trend.mean : trend.at(mesh.points[p]);
-        if (!options.clamp) return x;
+        if (!options.clamp && !options.keep_sign) return x;
         const auto [least, most] = located.range_of(wanted);
-        for (double& value : x) value = std::clamp(value, least, most);
+        if (!options.clamp && least < 0) return x;
+        const double low_end = options.clamp ? least : 0;
+        const double high_end = options.clamp ? most : std::numeric_limits<double>::infinity();
+        for (double& value : x) value = std::clamp(value, low_end, high_end);
         found = limit.apply(x);
         return x;
     }

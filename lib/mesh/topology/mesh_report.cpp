@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "subvol/cell.h"
@@ -151,6 +152,17 @@ std::vector<ShapeReport> shapes_of_parts(const HexMesh& mesh, std::size_t begin,
 
 double min_scaled_jacobian(const std::array<Vec3, 8>& corners) {
     return measure(corners).min_scaled_jacobian;
+}
+
+double aspect_ratio(const std::array<Vec3, 8>& corners) {
+    constexpr double kMost = 1e9;
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    for (const auto& [a, b] : kCellEdges) {
+        const double length = glm::distance(corners[a], corners[b]);
+        shortest = std::min(shortest, length);
+        longest = std::max(longest, length);
+    }
+    return longest < kMost * shortest ? longest / shortest : kMost;
 }
 
 ShapeReport measure_cells(const HexMesh& mesh) {

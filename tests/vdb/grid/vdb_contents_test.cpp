@@ -76,5 +76,28 @@ TEST(VdbContents, VoxelsAreClamped) {
     test::expect_error(ErrorCode::InvalidInput, "components", [&] { clamp_voxels(grids[1], {{0}, {1}}); });
 }
 
+TEST(VdbContents, VoxelsNearTheBackgroundAreLeftOut) {
+    auto grids = grids_of_box();
+    const GridArray before = grid_array(grids[0]);
+    constexpr double kTolerance = 0.7;
+    std::size_t kept = 0;
+    for (const float value : before.values) kept += std::abs(double{value}) > kTolerance ? 1 : 0;  // NaN is not active
+    ASSERT_GT(kept, 0u);
+    ASSERT_LT(kept, grids[0].report().active_voxels);
+    prune_voxels(grids[0], kTolerance);
+    EXPECT_EQ(grids[0].report().active_voxels, kept);
+    const GridArray after = grid_array(grids[0]);
+    for (const float value : after.values) EXPECT_TRUE(std::isnan(value) || std::abs(double{value}) > kTolerance);
+    // Of vectors the length counts; a mask has no values.
+    const std::size_t vectors = grids[1].report().active_voxels;
+    const double longest = scalar_of(grids[1], std::nullopt, "length").report().max;
+    prune_voxels(grids[1], .999 * longest);
+    EXPECT_LT(grids[1].report().active_voxels, vectors);
+    EXPECT_GT(scalar_of(grids[1], std::nullopt, "length").report().min, .999 * longest);
+    const std::size_t mask = grids[3].report().active_voxels;
+    prune_voxels(grids[3], 9);
+    EXPECT_EQ(grids[3].report().active_voxels, mask);
+}
+
 }  // namespace vdb_contents_test
 }  // namespace subvol

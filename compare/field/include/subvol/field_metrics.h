@@ -3,10 +3,15 @@
 
 #include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "subvol/facts.h"
 #include "subvol/field.h"
 #include "subvol/field_samples.h"
+#include "subvol/hex_mesh.h"
 #include "subvol/progress.h"
+#include "subvol/scheme.h"
 #include "subvol/surface.h"
 
 namespace subvol {
@@ -19,8 +24,9 @@ namespace subvol {
 /// gradients were compared.
 struct FieldDifference {
     double l1 = std::numeric_limits<double>::quiet_NaN();  ///< mean absolute difference
-    double l2 = l1;    ///< root mean square difference: the L² norm over the volume, divided by the root of the volume
-    double linf = l1;  ///< largest absolute difference at a place
+    double l2 = l1;     ///< root mean square difference: the L² norm over the volume, divided by the root of the volume
+    double linf = l1;   ///< largest absolute difference at a place
+    Vec3 linf_at{0.0};  ///< that place; the first of several
     /// Root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places.
     double gradient_rmse = l1;
     std::size_t samples = 0;    ///< places where both fields have a value
@@ -98,5 +104,38 @@ struct IsosurfaceDistance {
 /// throws: as `isosurface`, or Error(InvalidInput) if neither field takes the value
 [[nodiscard]] IsosurfaceDistance isosurface_distance(const FieldView& test, const FieldView& reference, double iso,
                                                      int resolution = 128, Progress* progress = nullptr);
+
+struct MeshDifferenceOptions {
+    SchemeOptions scheme{};  ///< of the reference's limit
+    Progress* progress = nullptr;
+};
+
+/// The largest difference of a field at a point.
+struct LargestDifference {
+    std::string name;
+    double max = 0;  ///< its amount, in the field's unit; of a vector or tensor the root of the sum of its channels' squares
+    Index point = 0;
+    Vec3 place{0.0};
+};
+
+struct MeshDifference {
+    HexMesh mesh;  ///< the first mesh with the differences as its attributes, under the names of the fields
+    /// Both meshes have the same cells and points: values at points, and at cells, were subtracted one by one
+    bool same_points = false;
+    std::size_t outside = 0;   ///< points outside the reference's limit: they have the value of its nearest place
+    double outside_world = 0;  ///< how far the farthest of them lies outside
+    std::vector<LargestDifference> fields;
+};
+
+/// The report as facts: same_points, outside, outside_distance, and a group of fields with max, at and point of each.
+[[nodiscard]] Facts facts_of(const MeshDifference& difference);
+
+/// The difference of each field that two meshes have, test − reference, at the points of the first mesh: its value there minus
+/// that of the reference's limit at the place. Fields with another number of channels in the reference are left out.
+///
+/// throws: Error(InvalidInput) as `LimitProbe`, or if the meshes have no field in common; Error(Cancelled)
+/// cost:   that of one subtraction if both have the same cells and points; else as `LimitProbe`
+[[nodiscard]] MeshDifference mesh_difference(const HexMesh& test, const HexMesh& reference,
+                                             const MeshDifferenceOptions& options = {});
 
 }  // namespace subvol

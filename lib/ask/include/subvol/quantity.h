@@ -36,6 +36,8 @@ struct SelectedField {
 ///     length(U)  mises(S)  principal1(S)  …       functions of vectors and tensors
 ///     grad(T)  grad(U)  div(U)  curl(U)           derivatives of the limit of the scheme MCQ by places, at the points
 ///     vector(ux,uy,uz)  tensor(sxx,syy,…)         fields of scalars
+///     quality  aspect                             of each cell: the least scaled Jacobian at its corners, and the longest edge
+///                                                 over the shortest; also scaled_jacobian and aspect_ratio
 ///     (T-293)/620 + 2*length(U)*(z>0)             arithmetic and functions of muParser, of scalars; a vector stands for its
 ///     length x  y  z  time  pi                           coordinates, and the time of the mesh's step
 ///

@@ -7,19 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "subvol/names.h"
+#include "subvol/camera.h"
 #include "subvol/option_names.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {
-
-/// The axis of the world that is up.
-enum class UpAxis { X, Y, Z };
-
-template <>
-struct NameTable<UpAxis> {
-    static constexpr Name<UpAxis> rows[] = {{UpAxis::X, "x"}, {UpAxis::Y, "y"}, {UpAxis::Z, "z"}};
-};
 
 struct PointsWriteOptions {
     bool ascii = false;     ///< for `.ply`: text instead of binary numbers

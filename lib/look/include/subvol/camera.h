@@ -8,9 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "subvol/names.h"
 #include "subvol/vec.h"
 
 namespace subvol {
+
+/// The axis of the world that is up.
+enum class UpAxis { X, Y, Z };
+
+template <>
+struct NameTable<UpAxis> {
+    static constexpr Name<UpAxis> rows[] = {{UpAxis::X, "x"}, {UpAxis::Y, "y"}, {UpAxis::Z, "z"}};
+};
 
 /// A camera without a lens, in a right-handed world. Rays go through pixel centres; pixel (0,0) is the top left.
 struct Camera {
@@ -90,13 +99,18 @@ private:
     std::shared_ptr<const RayEnds> ends_{};  // never changes: copies of a view share it
 };
 
-/// A perspective camera that sees a whole box: its eight corners, with a margin of 5 % and the box's centre in the middle. Up
-/// is z; y for a view along z.
+/// A perspective camera that sees a whole box: its eight corners, with a margin of 5 % and the box's centre in the middle. For
+/// a view along z, if z is up, y is up in the picture; for another axis that is what `turned_upright` makes of y.
 ///
 /// direction: from the eye to the box, e.g. (0,1,0) for the view `-y`
 /// aspect:    the picture's width / height
 /// throws:    Error(InvalidInput) if the box is empty or a number is out of range
-[[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
+[[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1,
+                                UpAxis up = UpAxis::Z);
+
+/// Turns a vector of a world whose z is up into that of a world where another axis is: for y, (x, z, −y), as `vdb --up y`
+/// turns meshes; for x, (z, y, −x).
+[[nodiscard]] Vec3 turned_upright(const Vec3& v, UpAxis up);
 
 /// The camera, moved along its line of sight until it sees the whole box with a margin of 5 %; an orthographic camera gets the
 /// height for that. Direction and field of view do not change. The target becomes the point of the line that is nearest to the
@@ -125,7 +139,9 @@ private:
 /// A view is named after the side of the eye: in `-y` the eye is at negative y and looks towards +y; in `iso` it is in the
 /// direction (+1,-1,+1) from the centre. Views have a field of view of 30°.
 ///
+/// up:     of named views: if it is not z, iso, front and the other words are the sides `turned_upright`; ±x ±y ±z are the same
+///         sides, with that axis up in the picture
 /// throws: Error(InvalidInput), Error(Io)
-[[nodiscard]] Camera parse_camera(const std::string& text, const Box& box, double aspect = 1);
+[[nodiscard]] Camera parse_camera(const std::string& text, const Box& box, double aspect = 1, UpAxis up = UpAxis::Z);
 
 }  // namespace subvol

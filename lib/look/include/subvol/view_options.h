@@ -28,16 +28,18 @@ struct ViewOptions {
     PictureSize size{};
     std::optional<std::string> camera{};  ///< text as `parse_camera` reads it; nothing: the named view
     std::string view = "iso";             ///< the side to look from; the camera is fitted to what is visible
+    UpAxis up = UpAxis::Z;                ///< the axis of the world that is up in named views
     bool fit = false;                     ///< moves the camera until the whole box is in the picture
     bool orthographic = false;            ///< makes a perspective camera an orthographic one, as high as the box needs
     std::optional<int> turntable{};       ///< the pictures of one turn, all of which see what is visible; nothing: one picture
 };
 
-/// size, camera, view, fit, ortho, turntable
+/// size, camera, view, up, fit, ortho, turntable
 [[nodiscard]] std::vector<Option> options_of(ViewOptions& options);
 
 /// As `parse_camera`; the error names the option.
-[[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect = 1);
+[[nodiscard]] Camera camera_of_option(const std::string& option, const std::string& text, const Box& box, double aspect = 1,
+                                      UpAxis up = UpAxis::Z);
 
 /// The numbers of a camera, as `parse_camera` reads them: exact.
 [[nodiscard]] std::string camera_text(const Camera& camera);

@@ -28,6 +28,8 @@ struct ApproximateOptions {
     int iterations = 200;
     /// Control values beyond the range of the samples become its nearer end, as for densities that are not below 0
     bool clamp = false;
+    /// Where no sample of a field is below 0, as in fog, control values below 0 become 0
+    bool keep_sign = false;
     /// The control mesh is refined up to so often where the samples are not met within `tolerance`: whole sheets of its cells
     /// are split, across the directions in which the fields bend there
     int refine = 0;
@@ -100,5 +102,11 @@ struct Approximation {
 /// Places of the limit in each cell, per_edge³ of them at the middles of equal parts: where a function of the world can be
 /// sampled.
 [[nodiscard]] std::vector<Vec3> places_in_cells(const HexMesh& mesh, int per_edge, const LimitOptions& options = {});
+
+/// A mesh of a box for data that has none: cells as near to cubes as they can be. Edges of one cell are sharp by themselves.
+///
+/// cells:  along the longest side, 1 to 1000
+/// throws: Error(InvalidInput) if cells is out of range, or the box is empty or flat
+[[nodiscard]] HexMesh mesh_of_box(const Box& box, int cells);
 
 }  // namespace subvol

@@ -63,6 +63,9 @@ struct ShapeReport {
 /// The least at the corners of a cell, in VTK order: 1 for a cube, at most 0 where the cell is turned inside out or degenerate.
 [[nodiscard]] double min_scaled_jacobian(const std::array<Vec3, 8>& corners);
 
+/// The longest of a cell's twelve edges over the shortest: 1 for a cube. At most 1e9, also where an edge has no length.
+[[nodiscard]] double aspect_ratio(const std::array<Vec3, 8>& corners);
+
 /// cost: parallel; the same for any number of threads
 [[nodiscard]] ShapeReport measure_cells(const HexMesh& mesh);
 

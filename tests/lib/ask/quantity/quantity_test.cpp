@@ -248,5 +248,37 @@ TEST(Quantity, SaysWhatIsWrong) {
     refused("", "");
 }
 
+TEST(Quantity, QualityIsThatOfTheCells) {
+    // Two cells side by side, of which the second is sheared: its edges along y are (1, 1, 0), and the others have length 1.
+    HexMesh mesh = test::make_box(2, 1, 1);
+    for (Vec3& p : mesh.points) {
+        if (p.x == 2 && p.y == 1) p.x = 3;
+        if (p.x == 1 && p.y == 1) p.x = 2;
+    }
+    const Attribute quality = field_of(mesh, "quality", "quality"), aspect = field_of(mesh, "a", "aspect");
+    EXPECT_TRUE(quality.constant);
+    ASSERT_EQ(quality.cells.size(), 2u);
+    EXPECT_NEAR(quality.cells[1], 1 / std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(aspect.cells[1], std::sqrt(2.0), 1e-12);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {  // points between the two cells have their mean
+        if (mesh.points[p].y > 0) continue;
+        const double mean = (quality.cells[0] + quality.cells[1]) / 2;
+        const double x = mesh.points[p].x;
+        EXPECT_NEAR(quality.values[p], x == 0 ? quality.cells[0] : x == 2 ? quality.cells[1] : mean, 1e-12);
+    }
+    EXPECT_EQ(field_of(mesh, "q", "scaled_jacobian").cells, quality.cells);
+    EXPECT_EQ(field_of(mesh, "q", "aspect_ratio").cells, aspect.cells);
+    const Attribute worse = field_of(mesh, "w", "10*(1 - quality)");
+    EXPECT_TRUE(worse.constant);
+    EXPECT_NEAR(worse.cells[1], 10 - 10 / std::sqrt(2.0), 1e-12);
+    // A field of that name is the field.
+    mesh.attributes = {{"quality", 1, std::vector<double>(mesh.points.size(), 7.0)}};
+    EXPECT_FALSE(field_of(mesh, "q", "quality").constant);
+    EXPECT_EQ(field_of(mesh, "q", "quality").values[0], 7);
+    // An edge without length.
+    mesh.points[mesh.cells[0][1]] = mesh.points[mesh.cells[0][0]];
+    EXPECT_EQ(field_of(mesh, "a", "aspect").cells[0], 1e9);
+}
+
 }  // namespace quantity_test
 }  // namespace subvol

@@ -303,5 +303,26 @@ TEST_F(CameraFile, NamesTheKeyThatIsWrong) {
     expect_error(ErrorCode::Io, "cannot be read", [this] { (void)parse_camera(path(".").string(), {}); });
 }
 
+TEST(ParseCamera, AnotherAxisIsUp) {
+    // A body of three lengths, turned so that its z becomes y or x: the picture of each side is the same.
+    const Box z_up{{-1, -2, -3}, {2, 3, 5}};
+    for (const UpAxis up : {UpAxis::X, UpAxis::Y}) {
+        Box turned;
+        for (const Vec3& corner : {z_up.lower, z_up.upper}) turned.add(turned_upright(corner, up));
+        EXPECT_EQ(turned_upright(Vec3(0, 0, 1), up), up == UpAxis::X ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+        for (const char* side : {"iso", "front", "back", "left", "right", "top", "bottom"}) {
+            const View straight(parse_camera(side, z_up, 1.5), 60, 40), after(parse_camera(side, turned, 1.5, up), 60, 40);
+            const Vec3 place(.3, -1.2, 2.7);
+            EXPECT_LT(glm::distance(straight.to_eye(place), after.to_eye(turned_upright(place, up))), 1e-12) << side;
+        }
+        // The axes keep their names, with the axis up in the picture unless the view is along it.
+        const Camera front = parse_camera("+z", turned, 1, up);
+        EXPECT_GT(front.eye.z, turned.upper.z);
+        EXPECT_EQ(front.up, turned_upright(Vec3(0, 0, 1), up));
+        const Camera above = parse_camera(up == UpAxis::X ? "+x" : "+y", turned, 1, up);
+        EXPECT_EQ(above.up, turned_upright(Vec3(0, 1, 0), up));
+    }
+}
+
 }  // namespace camera_test
 }  // namespace subvol

@@ -12,6 +12,7 @@
 #include "lib/volume_of.h"
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
+#include "subvol/mesh_report.h"
 #include "subvol/model.h"
 #include "subvol/probe.h"
 
@@ -317,6 +318,32 @@ TEST(Approximate, ClampKeepsControlValuesInTheRangeOfTheSamples) {
     EXPECT_GE(std::ranges::min(kept.mesh.attributes[0].values), 0);
     EXPECT_LE(std::ranges::max(kept.mesh.attributes[0].values), 1);
     EXPECT_GT(kept.report.fields[0].rms, free.report.fields[0].rms);  // the error that is said is that of the clamped field
+}
+
+TEST(Approximate, WhereNoSampleIsBelowZeroNoControlValueIs) {
+    const HexMesh box = make_box(5, 5, 5);
+    const auto step = [](double low) { return [low](const Vec3& x) { return x.x + x.y > 5 ? 1.0 : low; }; };
+    const HexMesh fog = random_samples(3000, bounds(box), 4, step(0)), signs = random_samples(3000, bounds(box), 4, step(-1));
+    const Approximation free = approximate(box, fog), kept = approximate(box, fog, {.keep_sign = true});
+    EXPECT_LT(std::ranges::min(free.mesh.attributes[0].values), -0.01);
+    EXPECT_EQ(std::ranges::min(kept.mesh.attributes[0].values), 0);
+    for (std::size_t p = 0; p < box.points.size(); ++p)
+        EXPECT_EQ(kept.mesh.attributes[0].values[p], std::max(0.0, free.mesh.attributes[0].values[p]));
+    EXPECT_EQ(approximate(box, signs, {.keep_sign = true}).mesh.attributes[0].values,
+              approximate(box, signs).mesh.attributes[0].values);
+}
+
+TEST(Approximate, ABoxForDataThatHasNoMesh) {
+    const HexMesh mesh = mesh_of_box({{-1, 0, 2}, {3, 1, 4.1}}, 8);
+    EXPECT_EQ(mesh.cells.size(), 8u * 2 * 4);  // of sides of .5, .5 and .525
+    EXPECT_EQ(bounds(mesh).lower, Vec3(-1, 0, 2));
+    EXPECT_EQ(bounds(mesh).upper, Vec3(3, 1, 4.1));
+    EXPECT_NEAR(measure_cells(mesh).volume, 4 * 2.1, 1e-12);
+    EXPECT_NEAR(measure_cells(refine(mesh)).volume, 4 * 2.1, 1e-12);  // with its edges sharp
+    EXPECT_EQ(mesh_of_box({Vec3(0.0), {1, 1e-6, 1}}, 2).cells.size(), 4u);
+    for (const int cells : {0, 1001}) EXPECT_THROW((void)mesh_of_box({Vec3(0.0), Vec3(1.0)}, cells), Error);
+    EXPECT_THROW((void)mesh_of_box({Vec3(0.0), Vec3(1, 0, 1)}, 2), Error);
+    EXPECT_THROW((void)mesh_of_box({}, 2), Error);
 }
 
 // The error and the range that are said, against an evaluation of the limit at other places; a larger version of this is

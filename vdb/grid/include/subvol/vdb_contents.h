@@ -38,4 +38,10 @@ struct VdbContents {
 /// throws: Error(InvalidInput) if the range has another number of components
 void clamp_voxels(VdbGrid& grid, const FieldRange& range);
 
+/// Makes the active voxels of a grid of floats or vectors whose value is within `tolerance` of the background, which they get,
+/// inactive; of vectors the length of the difference counts. Level sets and other grids stay as they are.
+///
+/// tolerance: in the unit of the values, ≥ 0
+void prune_voxels(VdbGrid& grid, double tolerance);
+
 }  // namespace subvol

@@ -34,6 +34,7 @@ struct ViewFlow {
 /// What is shown, as a plain value: the same state gives the same picture.
 struct ViewState {
     Camera camera{};
+    UpAxis up = UpAxis::Z;          ///< the axis of the world that is up in named views
     int width = 512, height = 512;  ///< size of the picture in pixels, with its legend
     std::string field{};            ///< the field that is shown, as for `select_field`; empty: the most sensible one
     std::size_t step = 0;           ///< the step of a series, from 0

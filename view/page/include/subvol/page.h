@@ -49,6 +49,7 @@ struct PageOptions {
     std::vector<PageField> fields{};
     PageLook look = PageLook::Solid;
     Camera camera{};                ///< the camera with which the page opens
+    UpAxis up = UpAxis::Z;          ///< the axis of the world that is up when a side is chosen
     double opacity_unit_world = 0;  ///< as in Optics; 0: 1/100 of the diagonal
     Vec3 background{0.0};           ///< linear RGB
     /// A picture of the first field and the last step by the same camera, to be shown beside the page's own.
