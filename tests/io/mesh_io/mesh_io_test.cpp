@@ -126,10 +126,8 @@ TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
 #else
     EXPECT_THAT(refusal, HasSubstr("without the readers of solvers' files, SUBVOL_SOLVERS"));
 #endif
-    EXPECT_THAT(
-        error_of([&] { write_mesh(path("a.vtk"), kBox); }),
-        HasSubstr(
-            "\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML; .msh: Gmsh; .vtkhdf, .hdf: VTKHDF"));
+    EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
+                HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML; .msh: Gmsh; .vtkhdf, .hdf: VTKHDF"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };
     EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("none.mesh: cannot be read: No such file"));
     std::filesystem::create_directory(path("folder.mesh"));
