@@ -9,6 +9,7 @@
 #include "subvol/detail/fold_samples.h"
 #include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/mesh_report.h"
 
 namespace subvol::detail {
 namespace {
