@@ -67,17 +67,17 @@ TEST(ThinParts, OfAHollowSphereAreAllOfIt) {
 }
 
 TEST(ThinParts, AreSaidWithTheNumberOfCellsThatWouldDo) {
-    const Surface thin = plate({1, 0.5, 0.12});
-    const ControlMesh made = control_mesh_of(thin, {.cells = 5, .folds = {.keep = true}});
-    EXPECT_NEAR(made.report.thin.thickness_world, 0.12, 1e-9);
+    const Surface thin = plate({1, 0.5, 0.25});
+    const ControlMesh made = control_mesh_of(thin, {.cells = 4, .folds = {.keep = true}});
+    EXPECT_NEAR(made.report.thin.thickness_world, 0.25, 1e-9);
     EXPECT_THAT(made.report.shape.warnings.back(),
-                HasSubstr("74 % of the surface bounds parts that are thinner than 1.5 cells, such as 0.12 at"));
-    EXPECT_THAT(made.report.shape.warnings.back(), HasSubstr(": cells 17 has two across them"));
+                HasSubstr("57 % of the surface bounds parts that are thinner than 1.5 cells, such as 0.25 at"));
+    EXPECT_THAT(made.report.shape.warnings.back(), HasSubstr(": cells 8 has two across them"));
     // With as many cells nothing is wrong, and nothing is said.
-    const ControlMesh better = control_mesh_of(thin, {.cells = 17});
+    const ControlMesh better = control_mesh_of(thin, {.cells = 8});
     EXPECT_TRUE(better.report.shape.is_sound());
     EXPECT_EQ(better.report.sharp.missed, 0u);
-    EXPECT_NEAR(better.report.shape.volume_world / (0.5 * 0.12), 1, 0.02);
+    EXPECT_NEAR(better.report.shape.volume_world / (0.5 * 0.25), 1, 0.02);
     EXPECT_EQ(better.report.thin.part, 0);
     EXPECT_TRUE(better.report.shape.warnings.empty());
 }
