@@ -259,6 +259,7 @@ class ThinParts(TypedDict):
 
 class _Enclosed(TypedDict, total=False):
     enclosed_world: float  # if the surface has no holes and no parts cross
+    thin: ThinParts  # if the mesh is not as it should be
 
 
 class ControlMeshReport(ShapeReport, _Enclosed):
@@ -270,7 +271,6 @@ class ControlMeshReport(ShapeReport, _Enclosed):
     divided: int
     side_world: float
     sharp: SharpCurves
-    thin: ThinParts
     min_scaled_jacobian: float
     surface: SurfaceBodies
 

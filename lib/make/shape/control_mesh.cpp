@@ -75,13 +75,14 @@ void warn_of_thin_parts(const SurfaceBodies& bodies, const ControlMeshOptions& o
     const bool is_off = report.enclosed_world && std::abs(report.shape.volume_world / *report.enclosed_world - 1) >= kMuch;
     const bool is_missed = report.sharp.missed > 0 || report.shape.after.missed_max > report.side_world;
     if (report.shape.is_sound() && !is_off && !is_missed) return;
-    report.thin = thin_parts(bodies, kThin * report.side_world);
-    if (report.thin.part < kLittle) return;
-    const double cells = std::ceil(kAcross * report.side_world * options.cells / report.thin.thickness_world);
+    const ThinParts thin = thin_parts(bodies, kThin * report.side_world);
+    report.thin = thin;
+    if (thin.part < kLittle) return;
+    const double cells = std::ceil(kAcross * report.side_world * options.cells / thin.thickness_world);
     report.shape.warnings.push_back(
-        number_text(100 * report.thin.part, 2) + " % of the surface bounds parts that are thinner than " + number_text(kThin) +
-        " cells, such as " + number_text(report.thin.thickness_world, 3) + " at " + number_text(report.thin.at.x, 3) + ", " +
-        number_text(report.thin.at.y, 3) + ", " + number_text(report.thin.at.z, 3) + ": " +
+        number_text(100 * thin.part, 2) + " % of the surface bounds parts that are thinner than " + number_text(kThin) +
+        " cells, such as " + number_text(thin.thickness_world, 3) + " at " + number_text(thin.at.x, 3) + ", " +
+        number_text(thin.at.y, 3) + ", " + number_text(thin.at.z, 3) + ": " +
         (cells > kMostCells ? "no number of cells along the longest side has two across them"
                             : option_name("cells", options.names) + " " + number_text(cells) + " has two across them"));
 }
@@ -138,10 +139,12 @@ Facts facts_of(const ControlMeshReport& report) {
     sharp["rms"] = report.sharp.rms;
     sharp["max"] = report.sharp.max;
     facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
-    Facts& thin = facts.group("thin");
-    thin["part"] = report.thin.part;
-    thin["thickness_world"] = report.thin.thickness_world;
-    thin["at"] = std::array{report.thin.at.x, report.thin.at.y, report.thin.at.z};
+    if (report.thin) {
+        Facts& thin = facts.group("thin");
+        thin["part"] = report.thin->part;
+        thin["thickness_world"] = report.thin->thickness_world;
+        thin["at"] = std::array{report.thin->at.x, report.thin->at.y, report.thin->at.z};
+    }
     Facts& surface = facts.group("surface");
     surface["walls"] = report.surface.walls;
     surface["united"] = report.surface.united;

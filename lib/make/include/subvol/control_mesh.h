@@ -58,12 +58,12 @@ struct ControlMeshReport {
     FitShapeReport shape;  ///< how far the limit's boundary is from the surface; `before`: as cubes with a layer around them
     SharpEdgeReport sharp;
     EnclosureReport surface;
-    ThinParts thin;           ///< looked for only if the mesh is not as it should be
-    std::size_t parts = 0;    ///< parts of the mesh that are not joined
-    std::size_t added = 0;    ///< cubes that were needed to make the boundary of the cubes a surface
-    int refined = 0;          ///< how often cubes were divided
-    std::size_t divided = 0;  ///< how many cubes were divided in all
-    double side_world = 0;    ///< side of a cube that is not divided
+    std::optional<ThinParts> thin{};  ///< looked for if the mesh is not as it should be
+    std::size_t parts = 0;            ///< parts of the mesh that are not joined
+    std::size_t added = 0;            ///< cubes that were needed to make the boundary of the cubes a surface
+    int refined = 0;                  ///< how often cubes were divided
+    std::size_t divided = 0;          ///< how many cubes were divided in all
+    double side_world = 0;            ///< side of a cube that is not divided
     /// What the surface encloses, to compare with `shape.volume_world`; nothing where it has holes or parts cross
     std::optional<double> enclosed_world{};
     /// Least of the control cells: 1 for cubes, negative if one is turned inside out at a corner

@@ -69,7 +69,7 @@ TEST(ThinParts, OfAHollowSphereAreAllOfIt) {
 TEST(ThinParts, AreSaidWithTheNumberOfCellsThatWouldDo) {
     const Surface thin = plate({1, 0.5, 0.25});
     const ControlMesh made = control_mesh_of(thin, {.cells = 4, .folds = {.keep = true}});
-    EXPECT_NEAR(made.report.thin.thickness_world, 0.25, 1e-9);
+    EXPECT_NEAR(made.report.thin.value().thickness_world, 0.25, 1e-9);
     EXPECT_THAT(made.report.shape.warnings.back(),
                 HasSubstr("57 % of the surface bounds parts that are thinner than 1.5 cells, such as 0.25 at"));
     EXPECT_THAT(made.report.shape.warnings.back(), HasSubstr(": cells 8 has two across them"));
@@ -78,7 +78,7 @@ TEST(ThinParts, AreSaidWithTheNumberOfCellsThatWouldDo) {
     EXPECT_TRUE(better.report.shape.is_sound());
     EXPECT_EQ(better.report.sharp.missed, 0u);
     EXPECT_NEAR(better.report.shape.volume_world / (0.5 * 0.25), 1, 0.02);
-    EXPECT_EQ(better.report.thin.part, 0);
+    EXPECT_FALSE(better.report.thin);
     EXPECT_TRUE(better.report.shape.warnings.empty());
 }
 
