@@ -42,6 +42,18 @@ void add_entities(int dimension, const std::vector<std::vector<int>>& groups, bo
     }
 }
 
+// What can stand between quotes on a line of the file, which has at most 128 characters.
+std::string name_between_quotes(std::string name) {
+    constexpr std::size_t kLongest = 127;
+    constexpr unsigned char kFirstPrintable = ' ';
+    for (char& c : name) {
+        if (c == '"') c = '\'';
+        if (static_cast<unsigned char>(c) < kFirstPrintable) c = '_';
+    }
+    name.resize(std::min(name.size(), kLongest));
+    return name;
+}
+
 class GmshWriter {
 public:
     GmshWriter(const std::filesystem::path& path, const WrittenMesh& written)
@@ -104,12 +116,8 @@ private:
         add_entities(kVolume, of_cells, true, entities_);
     }
 
-    // A line of the section has at most 128 characters between quotes.
     int name(int dimension, const std::string& given) {
-        constexpr std::size_t kLongest = 127;
-        std::string text = given;
-        std::ranges::replace(text, '"', '\'');
-        text.resize(std::min(text.size(), kLongest));
+        const std::string text = name_between_quotes(given);
         if (text != given) warnings_.push_back("group " + in_quotes(given) + " is called " + in_quotes(text));
         names_.emplace_back(dimension, text);
         return static_cast<int>(names_.size());
@@ -222,9 +230,7 @@ private:
         const std::size_t count = at_cells ? mesh_.cells.size() : mesh_.points.size();
         const auto channels = static_cast<std::size_t>(attribute.channels);
         const std::string section = at_cells ? "ElementData\n" : "NodeData\n";
-        std::string text = attribute.name;
-        std::ranges::replace(text, '"', '\'');
-        out_.write("$" + section + "1\n\"" + text + "\"\n1\n");
+        out_.write("$" + section + "1\n\"" + name_between_quotes(attribute.name) + "\"\n1\n");
         NumberWriter numbers(out_, true);
         numbers.put(mesh_.time.value_or(0));
         numbers.end_row();

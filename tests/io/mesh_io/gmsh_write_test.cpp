@@ -30,11 +30,11 @@ TEST_F(GmshWrite, PatchesAndSetsComeBack) {
     MeshSets sets;
     sets.patches = {
         {"left", {{0, 0}, {3, 0}}}, {"lid of \"it\"", {{0, 5}, {1, 5}, {2, 5}}}, {"all of cell 0", {{0, 0}, {0, 4}, {0, 5}}}};
-    sets.sets = {{"a", {0, 1, 2}}, {"b", {2, 3}}, {"nothing", {}}};
+    sets.sets = {{"a", {0, 1, 2}}, {"b", {2, 3}}, {"nothing", {}}, {"two\nlines", {5}}};
     const std::vector<Index> edge{0, 1, 2, 3}, corner{0};
     sets.nodes = {node_set_of(box, "edge", edge), node_set_of(box, "corner", corner)};
     const ReadResult read = again(box, sets);
-    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("is called \"lid of 'it'\"")));
+    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("is called \"lid of 'it'\""), HasSubstr("is called \"two_lines\"")));
     std::map<std::string, std::vector<std::pair<Index, int>>> patches;
     for (const Patch& patch : read.sets.patches) {
         for (const CellSide& side : patch.sides) patches[patch.name].emplace_back(side.cell, side.side);
