@@ -234,7 +234,8 @@ public:
                "overlap. Fields: linf_at is the place of linf, among those of --samples. With --output also difference: "
                "same_points, "
                "outside and outside_distance (points of A outside B, which are compared with its nearest place), fields {name: "
-               "max, at, point}; values of A at its points, of B those of its limit there, or point by point where both have "
+               "max, at, point or cell}; values of A at its points, of B those of its limit there, or point by point where "
+               "both have "
                "the "
                "same points and cells. Exit code 1 if a --fail-under is not met, or one is given and the first field has "
                "values at less of "
@@ -332,7 +333,9 @@ private:
         if (json.contains("difference")) {
             for (const auto& [name, largest] : json.at("difference").at("fields").items())
                 lines.emplace_back(name, text("differs at most by ", std::setprecision(6), largest.at("max").get<double>(),
-                                              " at point ", largest.at("point"), " (", place_words(largest.at("at")), ")"));
+                                              largest.contains("cell") ? " in cell " : " at point ",
+                                              largest.at(largest.contains("cell") ? "cell" : "point"), " (",
+                                              place_words(largest.at("at")), ")"));
             lines.emplace_back("differences",
                                text(json.at("output").get<std::string>(), ", at the points of A",
                                     json.at("difference").at("same_points").get<bool>() ? ", which B has, too" : ""));

@@ -149,18 +149,28 @@ private:
     std::vector<Index> left_;
 };
 
-LargestDifference largest_of(const Attribute& field, const std::vector<Vec3>& points) {
-    LargestDifference largest{.name = field.name};
+LargestDifference largest_of(const Attribute& field, const HexMesh& mesh) {
+    const bool at_cells = !field.cells.empty();
+    const std::vector<double>& values = at_cells ? field.cells : field.values;
     const auto channels = static_cast<std::size_t>(field.channels);
-    for (std::size_t p = 0; p < points.size(); ++p) {
+    double largest = -1;
+    Index place = 0;
+    for (Index k = 0; k < values.size() / channels; ++k) {
         double square = 0;
-        for (std::size_t c = 0; c < channels; ++c) square += field.values[p * channels + c] * field.values[p * channels + c];
-        if (p > 0 && !(std::sqrt(square) > largest.max)) continue;
-        largest.max = std::sqrt(square);
-        largest.point = static_cast<Index>(p);
-        largest.place = points[p];
+        for (std::size_t c = 0; c < channels; ++c) square += values[k * channels + c] * values[k * channels + c];
+        if (square <= largest) continue;
+        largest = square;
+        place = k;
     }
-    return largest;
+    LargestDifference found{.name = field.name, .max = std::sqrt(largest)};
+    if (!at_cells) {
+        found.point = place;
+        found.place = mesh.points[place];
+        return found;
+    }
+    found.cell = place;
+    for (const Index p : mesh.cells[place]) found.place += mesh.points[p] / 8.0;
+    return found;
 }
 
 }  // namespace
@@ -175,7 +185,8 @@ Facts facts_of(const MeshDifference& difference) {
         Facts& field = fields.group(largest.name);
         field["max"] = largest.max;
         field["at"] = std::array{largest.place.x, largest.place.y, largest.place.z};
-        field["point"] = largest.point;
+        if (largest.point) field["point"] = *largest.point;
+        if (largest.cell) field["cell"] = *largest.cell;
     }
     return facts;
 }
@@ -196,7 +207,7 @@ MeshDifference mesh_difference(const HexMesh& test, const HexMesh& reference, co
         other.attributes = common.reference;
         DifferenceAtPlaces(std::move(other), options, found).subtract();
     }
-    for (const Attribute& field : found.mesh.attributes) found.fields.push_back(largest_of(field, found.mesh.points));
+    for (const Attribute& field : found.mesh.attributes) found.fields.push_back(largest_of(field, found.mesh));
     return found;
 }
 

@@ -282,12 +282,16 @@ class CellLeft(TypedDict):
     reason: str
 
 
-class LargestDifference(TypedDict):
+class _PlaceOfDifference(TypedDict, total=False):
+    point: int
+    cell: int  # of a field at cells
+
+
+class LargestDifference(_PlaceOfDifference):
     """Of a field, by `mesh_difference`."""
 
     max: float
     at: list[float]
-    point: int
 
 
 class DifferenceReport(TypedDict):

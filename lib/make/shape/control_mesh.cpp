@@ -83,7 +83,7 @@ void warn_of_thin_parts(const SurfaceBodies& bodies, const ControlMeshOptions& o
         number_text(100 * thin.part, 2) + " % of the surface bounds parts that are thinner than " + number_text(kThin) +
         " cells, such as " + number_text(thin.thickness_world, 3) + " at " + number_text(thin.at.x, 3) + ", " +
         number_text(thin.at.y, 3) + ", " + number_text(thin.at.z, 3) + ": " +
-        (cells > kMostCells ? "no number of cells along the longest side has two across them"
+        (cells > kMostCells ? "two across them take more than 1000 cells along the longest side"
                             : option_name("cells", options.names) + " " + number_text(cells) + " has two across them"));
 }
 

@@ -41,6 +41,11 @@ TEST(MeshDifference, ValuesAtCellsOfOneMesh) {
     const MeshDifference found = mesh_difference(mesh, other);
     EXPECT_TRUE(found.mesh.attributes[0].constant);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) EXPECT_EQ(found.mesh.attributes[0].cells[c], c == 3 ? .75 : 0);
+    // Means at points would hide it. Cell 3 is that of the upper halves of x and y and the lower one of z.
+    EXPECT_EQ(found.fields[0].max, .75);
+    EXPECT_EQ(found.fields[0].cell, 3u);
+    EXPECT_FALSE(found.fields[0].point);
+    EXPECT_EQ(found.fields[0].place, Vec3(0.75, 0.75, 0.25));
 }
 
 TEST(MeshDifference, ALinearFieldOfAnotherMeshIsMetAtEveryPoint) {

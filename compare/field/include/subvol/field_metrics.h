@@ -110,12 +110,13 @@ struct MeshDifferenceOptions {
     Progress* progress = nullptr;
 };
 
-/// The largest difference of a field at a point.
+/// The largest difference of a field at a point or, of fields at cells, in a cell.
 struct LargestDifference {
     std::string name;
     double max = 0;  ///< its amount, in the field's unit; of a vector or tensor the root of the sum of its channels' squares
-    Index point = 0;
-    Vec3 place{0.0};
+    std::optional<Index> point{};  ///< of a field at points
+    std::optional<Index> cell{};   ///< of a field whose differences are at cells
+    Vec3 place{0.0};               ///< the point, or the middle of the cell
 };
 
 struct MeshDifference {
@@ -127,7 +128,7 @@ struct MeshDifference {
     std::vector<LargestDifference> fields;
 };
 
-/// The report as facts: same_points, outside, outside_distance, and a group of fields with max, at and point of each.
+/// The report as facts: same_points, outside, outside_distance, and a group of fields with max, at, and point or cell of each.
 [[nodiscard]] Facts facts_of(const MeshDifference& difference);
 
 /// The difference of each field that two meshes have, test − reference, at the points of the first mesh: its value there minus
