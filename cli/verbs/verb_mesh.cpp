@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 
 #include "grid_input.h"
@@ -132,6 +133,12 @@ private:
         if (found.sharp.missed > 0) {
             report.warn(text("sharp edges of the length ", found.sharp.missed_length_world, " of ", found.sharp.length_world,
                              " become round, as no edges of the mesh can follow them: more --cells or --refine may"));
+        }
+        const std::string ending = std::filesystem::path(output_).extension().string();
+        if ((ending == ".inp" || ending == ".msh") && !interpolates(scheme_.options(0, nullptr).scheme.kind)) {
+            report.warn(text("the points of ", output_,
+                             " are not on the limit of the scheme, and solvers take straight cells "
+                             "between them: those of --scheme mcq are on it"));
         }
         if (!found.shape.is_sound()) report.warn(text(output_, " is written all the same; the exit code is 1"));
         report.all_said();

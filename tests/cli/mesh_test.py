@@ -34,6 +34,15 @@ class Mesh(InFolder):
         ball = self.run_ok("probe", "model:ball:4", "--density", "1", "--stats", "--json").json()["stats"]["whole"]["volume"]
         self.assertLess(abs(filled / ball - 1), .02)
 
+    def test_a_deck_has_points_of_the_surface_or_says_that_it_has_not(self):
+        (self.folder / "cube.obj").write_text(cube(0))
+        for scheme, off in (("mcq", False), ("cc", True)):
+            done = self.run_ok("mesh", "cube.obj", "-o", "cube.inp", "--cells", "4", "--scheme", scheme, "--sharp-angle", "180")
+            self.assertEqual("are not on the limit of the scheme" in done.err, off, done.err)
+            corners = [float(word) for line in (self.folder / "cube.inp").read_text().split("*ELEMENT")[0].splitlines() if line[0].isdigit() for word in line.split(",")[1:]]
+            # The rounded corners of the cube, .5 √3 from its middle; control points of cc are beyond what their limit meets.
+            self.assertEqual(max(corners) > 1.01, off, (scheme, max(corners)))
+
     def test_cells_are_divided_where_the_surface_asks_for_it(self):
         # a ball with ripples on one side, too short for large cells
         self.run_ok("surface", "model:ball:4", "--boundary", "-o", "ball.obj", "--tolerance", "1e-3", "--quiet")
