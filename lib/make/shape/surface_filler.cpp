@@ -154,9 +154,9 @@ std::vector<std::uint8_t> SurfaceFiller::bad_cells(const std::vector<std::uint8_
         std::array<Vec3, 8> corners;
         for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh_.points[mesh_.cells[c][k]];
         // The angle of a sharp edge may be acute, and would be rounded.
-        constexpr double kFlat = 0.3, kFlatAtCrease = 0.05;
+        constexpr double kFlatCorner = 0.3, kFlatAtCrease = 0.05;
         const bool at_crease = std::ranges::any_of(mesh_.cells[c], [&](Index p) { return sharp[p] != 0; });
-        bad[c] = min_scaled_jacobian(corners) < (at_crease ? kFlatAtCrease : kFlat) ? 1 : 0;
+        bad[c] = min_scaled_jacobian(corners) < (at_crease ? kFlatAtCrease : kFlatCorner) ? 1 : 0;
     });
     if (options_.folds.keep) return bad;
     FoldOptions folds;
