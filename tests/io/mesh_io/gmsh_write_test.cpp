@@ -71,7 +71,8 @@ TEST_F(GmshWrite, FieldsComeBackAtTheirCellsAndPoints) {
     const std::size_t points = box.points.size();
     const auto field = [&](const char* name, int channels) {
         Attribute made{name, channels, {}};
-        for (std::size_t k = 0; k < points * static_cast<std::size_t>(channels); ++k) made.values.push_back(std::sqrt(k + 0.1));
+        for (std::size_t k = 0; k < points * static_cast<std::size_t>(channels); ++k)
+            made.values.push_back(std::sqrt(static_cast<double>(k) + 0.1));
         return made;
     };
     box.attributes = {field("T", 1), field("U", 3), field("S", 6), field("odd", 2)};
