@@ -5,7 +5,7 @@
 // largest row sums. All matrices are enclosures (enclosure.h); what is not exact in them is
 //
 //     T      weights, rounded (kOfWeights)
-//     χ, λ   an eigenvector of frequency 1 among the sectors: five numbers and λ, enclosed by Newton's method
+//     χ, ψ   eigenvectors of frequency 1 and 2 among the sectors, enclosed (edge_modes.h)
 //     L      any vectors near the left eigenvectors, and a correction that makes Lᵀ(1, χ) = 1
 //     Π, T̄   products of these
 //
@@ -17,11 +17,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "edge_modes.h"
 #include "enclosure.h"
 #include "kept.h"
 #include "spline_rows.h"
@@ -46,29 +46,6 @@ Row row_of(std::size_t i) {
     return static_cast<Row>(i);
 }
 
-/// The points of a window.
-class WindowPlan {
-public:
-    explicit WindowPlan(std::size_t cells) : star_{cells, EdgeWindow::kReach} {}
-
-    [[nodiscard]] const Star& star() const { return star_; }
-    [[nodiscard]] Row across() const { return row_of(star_.points()); }
-    [[nodiscard]] Row points() const { return row_of(EdgeWindow::kLayers) * across(); }
-
-    // Calls visit(point of the star, s, i, j) for each sector's points; those of spokes more than once.
-    template <class Visit>
-    void each(const Visit& visit) const {
-        for (std::size_t s = 0; s < star_.cells; ++s) {
-            for (int i = 0; i <= static_cast<int>(star_.reach); ++i) {
-                for (int j = 0; j <= static_cast<int>(star_.reach); ++j) visit(row_of(star_.number(s, i, j)), s, i, j);
-            }
-        }
-    }
-
-private:
-    Star star_;
-};
-
 // Whether a symmetry takes the rules of one half to those of another.
 bool is_alike(const MatrixXd& a, const MatrixXd& b, const std::vector<std::size_t>& to) {
     for (Row k = 0; k < a.rows(); ++k) {
@@ -81,7 +58,7 @@ bool is_alike(const MatrixXd& a, const MatrixXd& b, const std::vector<std::size_
 }
 
 // What the theorem takes for granted of the rules: means, the symmetries, layers that are at equal distances.
-bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan, bool extrudes) {
+bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan) {
     const Row n = plan.across();
     const std::size_t m = rules.cells;
     VectorXd w(plan.points());
@@ -96,15 +73,15 @@ bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan, bool extrude
             !is_alike(half, rules.halves[1 - h], window_symmetry(m, 0, false, true))) {
             return false;
         }
-        // Data that are constant along the edge: sums over layers are the same for all layers of both halves. Where the rules
-        // of the edge itself differ, this holds for vectors of frequency 1 after all, which are 0 at the edge.
+        // Data that are constant along the edge: sums over layers are the same for all layers of both halves. The rules of the
+        // edge itself may differ: vectors of frequency 1 and 2 are 0 there.
         const auto sums = [&](const MatrixXd& of, Row k) {
             VectorXd sum = VectorXd::Zero(n);
             for (Row l = 0; l < 4; ++l) sum += of.row(k).segment(l * n, n).transpose();
             return sum;
         };
         for (Row k = 0; k < half.rows(); ++k) {
-            if (!extrudes && k % n == 0) continue;
+            if (k % n == 0) continue;
             if (!((sums(half, k) - sums(rules.halves[0], k % n)).cwiseAbs().maxCoeff() <= 4 * kAlike)) return false;
         }
     }
@@ -114,107 +91,18 @@ bool is_as_expected(const EdgeRules& rules, const WindowPlan& plan, bool extrude
     return true;
 }
 
-/// χ₁ and χ₂ as the real and imaginary parts of a vector of frequency 1: with ω a turn by a sector, points (s, i, 0) have ω^s
-/// times a real number, points (s, i, i) ω^(s + 1/2) times one, (s, 2, 1) and (s, 1, 2) have ω^s c and ω^(s + 1) c̄.
-class Frequency {
-public:
-    static constexpr Row kUnknowns = 6;  // of (1, 0), (2, 0), (1, 1), (2, 2), and the parts of c
-    using Numbers = Eigen::Matrix<double, kUnknowns, 1>;
-
-    explicit Frequency(const WindowPlan& plan)
-        : plan_(plan), turn_(2 * std::numbers::pi / static_cast<double>(plan.star().cells)) {}
-
-    // The vector with these numbers on a layer.
-    [[nodiscard]] Eigen::VectorXcd spread(const Numbers& x) const {
-        Eigen::VectorXcd z = Eigen::VectorXcd::Zero(plan_.across());
-        plan_.each([&](Row p, std::size_t s, int i, int j) {
-            const auto at = static_cast<double>(s);
-            if (i > 0 && j == 0) z(p) = x(i - 1) * turned(at);
-            if (i > 0 && j == i) z(p) = x(1 + i) * turned(at + 0.5);
-            if (i == 2 && j == 1) z(p) = std::complex(x(4), x(5)) * turned(at);
-            if (i == 1 && j == 2) z(p) = std::complex(x(4), -x(5)) * turned(at + 1);
-        });
-        return z;
-    }
-
-    // The numbers of the real part of such a vector.
-    [[nodiscard]] Numbers read(const VectorXd& x) const {
-        const auto at = [&](std::size_t s, int i, int j) { return x(row_of(plan_.star().number(s, i, j))); };
-        const double c = at(0, 2, 1);
-        Numbers numbers;
-        numbers << at(0, 1, 0), at(0, 2, 0), at(0, 1, 1) / std::cos(turn_ / 2), at(0, 2, 2) / std::cos(turn_ / 2), c,
-            (c * std::cos(turn_) - at(1, 2, 1)) / std::sin(turn_);
-        return numbers;
-    }
-
-private:
-    [[nodiscard]] std::complex<double> turned(double sectors) const { return std::polar(1.0, sectors * turn_); }
-
-    const WindowPlan& plan_;
-    double turn_;
-};
-
-/// λ and χ, each within `error`.
-struct Characteristic {
-    double rate = 0, error = 0;
-    MatrixXd values;  ///< for each point of the window
-};
-
-// The eigenvector of the rules of a layer on vectors of frequency 1, with 1 at (1, 0). For y near it and X near the inverse of
-// F' at y, F the equations and |F''| ≤ 2, a solution is within r of y if |X F(y)| + |1 − X F'(y)| r + |X| r² ≤ r.
-std::optional<Characteristic> characteristic(const EdgeRules& rules, const WindowPlan& plan) {
-    const Frequency frequency(plan);
-    const Row n = plan.across();
-    MatrixXd layer = MatrixXd::Zero(n, n);
-    for (Row l = 0; l < 4; ++l) layer += rules.halves[0].block(n, l * n, n, n);
-    Eigen::Matrix<double, 6, 6> step;
-    for (Row k = 0; k < 6; ++k) step.col(k) = frequency.read(layer * frequency.spread(Frequency::Numbers::Unit(k)).real());
-    constexpr double kOfSteps = 0x1p-45;  // row sums of `step`: some 27 products in a row, and what `read` divides by
-    Frequency::Numbers x = frequency.read(frequency.spread((Frequency::Numbers() << 1, 2, 1, 2, 2, 1).finished()).real());
-    constexpr int kPowers = 100, kCorrections = 4;
-    for (int k = 0; k < kPowers; ++k) {
-        x = step * x;
-        x /= x(0);
-    }
-    double rate = (step * x)(0);
-    using Square = Eigen::Matrix<double, 6, 6>;
-    const auto slope = [&] {
-        Square f = step - rate * Square::Identity();
-        f.col(0) = -x;  // the unknown in place of the first number is λ
-        return f;
-    };
-    for (int k = 0; k < kCorrections; ++k) {
-        const Frequency::Numbers change = slope().fullPivLu().solve(Frequency::Numbers(rate * x - step * x));
-        rate += change(0);
-        x.tail<5>() += change.tail<5>();
-    }
-    const auto most = [](const auto& matrix) { return matrix.cwiseAbs().rowwise().sum().maxCoeff(); };
-    const Square f = slope(), inverse = f.fullPivLu().inverse();
-    const double size = most(inverse), largest = x.cwiseAbs().maxCoeff();
-    const double residual = size * (most(Frequency::Numbers(step * x - rate * x)) + 2 * kOfSteps * largest);
-    const double slack = most(Square(Square::Identity() - inverse * f)) + 2 * size * kOfSteps;
-    const double radius = 2 * residual;
-    if (!(residual + slack * radius + size * radius * radius <= 0.99 * radius) || !(radius < 1e-10) || !(rate < 0.7)) {
-        return std::nullopt;
-    }
-    const Eigen::VectorXcd z = frequency.spread(x);
-    Characteristic found{rate, 2 * radius + 0x1p-48 * largest, MatrixXd(plan.points(), 3)};
-    for (Row l = 0; l < 4; ++l) {
-        found.values.block(l * n, 0, n, 1) = z.real();
-        found.values.block(l * n, 1, n, 1) = z.imag();
-        found.values.block(l * n, 2, n, 1).setConstant(static_cast<double>(l) - 1.5);
-    }
-    return found;
-}
-
-MatrixXd with_ones(const MatrixXd& characteristic) {
-    MatrixXd kept(characteristic.rows(), 4);
-    kept << VectorXd::Ones(characteristic.rows()), characteristic;
+// The vectors that refinement keeps but for factors and a translation: 1, χ and ψ.
+MatrixXd kept_vectors(const EdgeMode& mode, const std::optional<EdgeMode>& slow) {
+    const MatrixXd across = mode.values();
+    MatrixXd kept(across.rows(), slow ? 6 : 4);
+    for (Row k = 0; k < kept.rows(); ++k)
+        kept.row(k).head(4) << 1, across.row(k), static_cast<double>(k / mode.layer.size()) - 1.5;
+    if (slow) kept.rightCols(2) = slow->values();
     return kept;
 }
 
-// Vectors near the left eigenvectors of the mean of both halves. The first three are even under an exchange of the ends, the
-// last is odd without an error: so its product with data that are constant along the edge is 0.
+// Vectors near the left eigenvectors of the mean of both halves. That of w is odd under an exchange of the ends without an
+// error, so that its product with data that are constant along the edge is 0; the others are even.
 MatrixXd left_vectors(const EdgeRules& rules, const MatrixXd& kept) {
     const MatrixXd mean = (rules.halves[0] + rules.halves[1]) / 2;
     const std::size_t m = rules.cells;
@@ -225,16 +113,19 @@ MatrixXd left_vectors(const EdgeRules& rules, const MatrixXd& kept) {
         const MatrixXd before = power == 0 ? left : MatrixXd(mean.transpose() * left);
         for (Row k = 0; k < left.rows(); ++k) {
             const Row other = row_of(exchanged[static_cast<std::size_t>(k)]);
-            for (Row c = 0; c < 4; ++c) left(k, c) = (before(k, c) + (c == 3 ? -1 : 1) * before(other, c)) / 2;
+            left.row(k) = (before.row(k) + before.row(other)) / 2;
+            left(k, 3) = (before(k, 3) - before(other, 3)) / 2;
         }
-        const MatrixXd units = kept.transpose() * left;
-        left.leftCols(3) = (left.leftCols(3) * units.topLeftCorner(3, 3).inverse()).eval();
-        left.col(3) /= units(3, 3);
+        MatrixXd units = kept.transpose() * left;
+        const double of_w = units(3, 3);
+        units.row(3).setZero();
+        units.col(3).setZero();
+        units(3, 3) = of_w;
+        left = (left * units.inverse()).eval();
     }
     for (Row k = 0; k < left.rows(); ++k) {
         const Row other = row_of(exchanged[static_cast<std::size_t>(k)]);
-        if (other <= k) continue;
-        left(other, 3) = -left(k, 3);
+        if (other > k) left(other, 3) = -left(k, 3);
     }
     return left;
 }
@@ -243,22 +134,28 @@ MatrixXd left_vectors(const EdgeRules& rules, const MatrixXd& kept) {
 double asymmetry(const MatrixXd& left, const WindowPlan& plan, const VectorXd& weights) {
     const std::size_t m = plan.star().cells;
     const double turn = 2 * std::numbers::pi / static_cast<double>(m);
-    Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
-    turned.topLeftCorner(2, 2) << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
+    const Row count = left.cols();
+    const auto turned = [](double angle) {
+        return (Eigen::Matrix2d() << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)).finished();
+    };
+    MatrixXd by_turn = MatrixXd::Identity(count, count), by_mirror = by_turn, by_exchange = by_turn;
+    for (Row c = 1; c < count; c += 3) {  // χ and ψ, of frequency 1 and 2
+        by_turn.block<2, 2>(c, c) = turned(static_cast<double>(c == 1 ? 1 : 2) * turn);
+        by_mirror(c + 1, c + 1) = -1;
+    }
+    by_exchange(3, 3) = -1;
     double most = 0;
-    const auto include = [&](const std::vector<std::size_t>& to, const Eigen::Matrix3d& by) {
-        Eigen::Matrix4d all = Eigen::Matrix4d::Identity();
-        all.bottomRightCorner(3, 3) = by;
-        Eigen::Vector4d sums = Eigen::Vector4d::Zero();
+    const auto include = [&](const std::vector<std::size_t>& to, const MatrixXd& by) {
+        VectorXd sums = VectorXd::Zero(count);
         for (Row k = 0; k < left.rows(); ++k) {
-            const Eigen::Vector4d expected = all * left.row(k).transpose();
+            const VectorXd expected = by * left.row(k).transpose();
             sums += (left.row(row_of(to[static_cast<std::size_t>(k)])).transpose() - expected).cwiseAbs() * weights(k);
         }
         most = std::max(most, sums.maxCoeff());
     };
-    include(window_symmetry(m, 1, false, false), turned);
-    include(window_symmetry(m, 0, true, false), Eigen::Vector3d(1, -1, 1).asDiagonal());
-    include(window_symmetry(m, 0, false, true), Eigen::Vector3d(1, 1, -1).asDiagonal());
+    include(window_symmetry(m, 1, false, false), by_turn);
+    include(window_symmetry(m, 0, true, false), by_mirror);
+    include(window_symmetry(m, 0, false, true), by_exchange);
     // A symmetry is a product of at most m + 2 of these, each of which takes row sums to at most 1.5 times as much.
     return 2 * static_cast<double>(m + 2) * up(most);
 }
@@ -350,63 +247,42 @@ Sizes sizes_of(const Enclosure& rows, Row first) {
     return {up(sizes.across + 2 * rows.off), up(sizes.along + rows.off)};
 }
 
-// Differences of neighbouring layers, with the weight d + d' of their points: a row whose product with data that are constant
-// along the edge is 0 is one of differences, at most as large.
-class LayerDifferences {
-public:
-    LayerDifferences(const WindowPlan& plan, const VectorXd& weights)
-        : across_(plan.across()), points_(weights), pairs_(weights.head(3 * across_) + weights.tail(3 * across_)) {}
+// Those of the rows of L: of χ₁ and χ₂, of w, and of ψ.
+struct Drift {
+    double across = 0, along = 0, slow = 0;
 
-    // A row of the window as one of differences, the sum of its magnitudes.
-    template <class RowOfWindow>
-    [[nodiscard]] double size(const RowOfWindow& row) const {
-        double sum = 0;
-        for (Row p = 0; p < across_; ++p) {
-            double total = 0;
-            for (Row l = 0; l < 3; ++l) {
-                total += row(l * across_ + p) / points_(l * across_ + p);
-                sum += std::abs(total) * pairs_(l * across_ + p);
-            }
-        }
-        return sum;
+    void include(const Enclosure& rows) {
+        const VectorXd sums = rows.near.cwiseAbs().rowwise().sum();
+        const auto pair = [&](Row k) { return up(std::hypot(sums(k), sums(k + 1)) + 2 * rows.off); };
+        across = std::max(across, pair(1));
+        along = std::max(along, up(sums(3) + rows.off));
+        if (sums.size() > 4) slow = std::max(slow, pair(4));
     }
-
-    // The largest of the rows 3 k + 2 of such rows.
-    [[nodiscard]] double along(const Enclosure& rows, Row first) const {
-        double most = 0;
-        for (Row k = first + 2; k < rows.near.rows(); k += 3) most = std::max(most, size(rows.near.row(k)));
-        return up(most + kOfOff * rows.off);
+    [[nodiscard]] Drift over(double by_across, double by_along) const {
+        return {up(across / by_across), up(along / by_along), up(slow / by_across)};
     }
-
-    // The norm of a product as it takes differences to differences.
-    [[nodiscard]] double norm_of(const Enclosure& product) const {
-        double most = 0;
-        for (Row k = 0; k < 3 * across_; ++k) {
-            const Eigen::RowVectorXd row =
-                product.near.row(k + across_) * points_(k + across_) - product.near.row(k) * points_(k);
-            most = std::max(most, size(row) / pairs_(k));
-        }
-        return up(most + kOfOff * product.off);
-    }
-
-private:
-    // Sums of up to three entries, with weights of pairs that are at most 2.25 + 1 or so times those of the entry.
-    static constexpr double kOfOff = 32;
-
-    Row across_;
-    VectorXd points_, pairs_;
 };
+
+// |H ∂ψ| / (1 − κ) on the ring, whose coefficients have these rows.
+double slow_size(const Enclosure& rows, const Enclosure& slow) {
+    const Enclosure slopes = times(rows, slow);
+    double size = 0;
+    for (Row k = 0; k < slopes.near.rows(); k += 3) size = std::max(size, spectral_norm(slopes.near.block<2, 2>(k, 0)));
+    return up(size + 2 * slopes.off);
+}
 
 }  // namespace
 
-EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
+EdgeKind make_edge_kind(const EdgeRules& rules) {
     EdgeKind kind;
     kind.cells = rules.cells;
     const WindowPlan plan(rules.cells);
-    if (rules.cells < 3 || !is_as_expected(rules, plan, extrudes)) return kind;
-    const auto map = characteristic(rules, plan);
-    if (!map) return kind;
+    if (rules.cells < 3 || !is_as_expected(rules, plan)) return kind;
+    const auto map = edge_mode(rules, plan, 1);
+    const auto slow = rules.cells > 4 ? edge_mode(rules, plan, 2) : std::nullopt;
+    if (!map || (rules.cells > 4 && !slow)) return kind;
     kind.rate = map->rate;
+    kind.slow_rate = slow ? slow->rate : 0;
     const Row count = plan.points();
     const double turn = 2 * std::numbers::pi / static_cast<double>(rules.cells);
     VectorXd weights(count);
@@ -418,16 +294,16 @@ EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
         }
     });
     const VectorXd inverse_weights = weights.cwiseInverse();
-    const MatrixXd unscaled = with_ones(map->values);
+    const MatrixXd unscaled = kept_vectors(*map, slow);
     const MatrixXd left = left_vectors(rules, unscaled);
 
     constexpr double kOfScaling = 4 * kUnitRoundoff;
     Enclosure kept{inverse_weights.asDiagonal() * unscaled, 0};
-    kept.off = up(2 * map->error + kOfScaling * norm(kept.near));
+    kept.off = up(2 * map->error + 2 * (slow ? slow->error : 0) + kOfScaling * norm(kept.near));
     Enclosure lefts{left.transpose() * weights.asDiagonal(), 0};
     lefts.off = up(kOfScaling * norm(lefts.near) + asymmetry(left, plan, weights));
-    const double not_unit = minus(times(lefts, kept), {MatrixXd::Identity(4, 4), 0}).most();
-    lefts.off = up(lefts.off + 1.01 * not_unit * lefts.most());  // what makes Lᵀ(1, χ) = 1
+    const double not_unit = minus(times(lefts, kept), {MatrixXd::Identity(kept.near.cols(), kept.near.cols()), 0}).most();
+    lefts.off = up(lefts.off + 1.01 * not_unit * lefts.most());  // what makes Lᵀ(1, χ, ψ) = 1
     if (!(lefts.off < kOfLefts)) return kind;
     const Enclosure projection = minus({MatrixXd::Identity(count, count), 0}, times(kept, lefts));
     kind.spread = std::max(projection.most(), lefts.most());
@@ -442,38 +318,34 @@ EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
     const auto ring = ring_rows(rules, kept, weights);
     if (!ring) return kind;
     kind.kappa = ring->kappa;
+    if (slow) kind.slow_size = slow_size(ring->rows, {kept.near.rightCols(2), kept.off});
 
     constexpr std::size_t kManyWords = 5, kMostWords = 6;
     constexpr double kFalls = 0.5, kFallsAtMany = 0.75, kFallsAtMost = 0.97;
     const double rate = map->rate - map->error;
-    const LayerDifferences differences(plan, weights);
+    const double slower = slow ? up((slow->rate + slow->error) / rate) : 0;  // μ/λ
     std::vector<Enclosure> rows{times(ring->rows, projection)};
     std::vector<Enclosure> products{{MatrixXd::Identity(count, count), 0}};
-    double falls_across = 1, falls_along = 1;
-    Sizes largest_ring, before, all, pairs_of_ring, pairs_of_drift;
+    Sizes largest_ring, before, all;
+    double fed = 0, most_fed = 0;              // what q' adds to C until a level, of the size of λʲ
     double power_across = 1, power_along = 1;  // λʲ and 2^−j, as lower bounds
+    double falls = 1;
     std::size_t words = 0;
     while (true) {
-        Sizes of_ring, of_drift, pairs_ring, pairs_drift;
-        for (const Enclosure& at : rows) {
-            of_ring.include(sizes_of(at, 0));
-            if (extrudes) pairs_ring.include({0, differences.along(at, 0)});
-        }
+        Sizes of_ring;
+        Drift of_drift;
+        for (const Enclosure& at : rows) of_ring.include(sizes_of(at, 0));
         for (const Enclosure& product : products) {
-            for (const Enclosure& drift : drifts) {
-                const Enclosure at = words == 0 ? drift : times(drift, product);
-                of_drift.include(sizes_of(at, 1));
-                if (extrudes) pairs_drift.include({0, differences.along(at, 1)});
-            }
+            for (const Enclosure& drift : drifts) of_drift.include(words == 0 ? drift : times(drift, product));
         }
         of_ring = of_ring.over(power_across, power_along);
         of_drift = of_drift.over(power_across * rate * (1 - kOfScaling), power_along / 2);
-        kind.levels.push_back({of_ring.across, of_ring.along, of_drift.across, of_drift.along});
-        all.include({up(of_ring.across + before.across), up(of_ring.along + before.along)});
+        kind.levels.push_back({of_ring.across, of_ring.along, of_drift.across, of_drift.along, of_drift.slow});
+        all.include({up(of_ring.across + before.across + kind.slow_size * fed), up(of_ring.along + before.along)});
         before = {up(before.across + of_drift.across), up(before.along + of_drift.along)};
         largest_ring.include(of_ring);
-        pairs_of_ring.include({0, up(pairs_ring.along / power_along)});
-        pairs_of_drift.along = up(pairs_of_drift.along + pairs_drift.along / (power_along / 2));
+        fed = up(fed * slower + of_drift.slow);
+        most_fed = std::max(most_fed, fed);
 
         ++words;
         power_across *= rate * (1 - kOfScaling);
@@ -483,14 +355,11 @@ EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
             for (const Enclosure& rest : rests) longer.push_back(words == 1 ? rest : times(product, rest));
         }
         products = std::move(longer);
-        double most = 0, most_pairs = 0;
-        for (const Enclosure& product : products) {
-            most = std::max(most, product.most());
-            if (extrudes) most_pairs = std::max(most_pairs, differences.norm_of(product));
-        }
-        falls_across = up(most / power_across);
-        falls_along = up((extrudes ? most_pairs : most) / power_along);
-        const double falls = std::max(falls_across, falls_along);
+        double most = 0;
+        for (const Enclosure& product : products) most = std::max(most, product.most());
+        kind.falls_across = up(most / power_across);
+        kind.falls_along = up(most / power_along);
+        falls = std::max(kind.falls_across, kind.falls_along);
         if (falls <= kFalls || (words == kManyWords && falls <= kFallsAtMany)) break;
         if (words == kMostWords) {
             if (!(falls <= kFallsAtMost)) return kind;
@@ -503,21 +372,19 @@ EdgeKind make_edge_kind(const EdgeRules& rules, bool extrudes) {
         rows = std::move(longer);
     }
     kind.words = words;
-    kind.falls_across = falls_across;
-    kind.falls_along = falls_along;
-    // Beyond these words: the ring is at most ω times the largest before, and the drifts are a geometric series.
-    if (!extrudes) {
-        pairs_of_ring.along = largest_ring.along;
-        pairs_of_drift.along = before.along;
-    }
-    const double drift_across = before.across / (1 - falls_across);
-    const double drift_along = before.along + pairs_of_drift.along * falls_along / (1 - falls_along);
-    kind.across = up(up(std::max(all.across, falls_across * largest_ring.across + drift_across)));
-    kind.along = up(up(std::max(all.along, falls_along * pairs_of_ring.along + drift_along)));
+    // Beyond these words: the ring is at most ω times the largest before, the drifts are a geometric series, and what is fed is
+    // at most what was fed in these and ω times the largest.
+    most_fed = std::max(most_fed, up(fed / (1 - kind.falls_across)));
+    const double beyond_across = kind.falls_across * largest_ring.across + before.across / (1 - kind.falls_across);
+    const double beyond_along = kind.falls_along * largest_ring.along + before.along / (1 - kind.falls_along);
+    kind.across = up(up(std::max(all.across, beyond_across + kind.slow_size * most_fed)));
+    kind.along = up(up(std::max(all.along, beyond_along)));
     for (Row k = 0; k < count; ++k) {
-        kind.characteristic.push_back({map->values(k, 0), map->values(k, 1), map->values(k, 2)});
+        kind.characteristic.push_back({unscaled(k, 1), unscaled(k, 2), unscaled(k, 3)});
         kind.left.push_back({left(k, 0), left(k, 1), left(k, 2), left(k, 3)});
         kind.weights.push_back(weights(k));
+        kind.slow.push_back(slow ? std::array{unscaled(k, 4), unscaled(k, 5)} : std::array{0.0, 0.0});
+        kind.slow_left.push_back(slow ? std::array{left(k, 4), left(k, 5)} : std::array{0.0, 0.0});
     }
     return kind;
 }
@@ -529,73 +396,9 @@ const EdgeKind& edge_kind(Scheme scheme, std::size_t cells) {
         return tbb::this_task_arena::isolate([&] {
             constexpr std::size_t kMostCells = 8;
             if (cells > kMostCells) return EdgeKind{};
-            return make_edge_kind(edge_rules(scheme, cells), scheme == Scheme::Bsxw);
+            return make_edge_kind(edge_rules(scheme, cells));
         });
     });
-}
-
-// Any A and ρ with P = 1 c + χ A + ρ would do but for the drift; those that are computed are near the true ones.
-namespace {
-
-/// The fit of χ to the values of a window: row c of A is a[c].
-struct Fit {
-    Vec3 center{0.0}, size{0.0};
-    Mat3 a{0.0};
-
-    Fit(const EdgeKind& kind, std::span<const Vec3> values) {
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            const Vec3 x = values[k] - values[0];
-            const auto& left = kind.left[k];
-            center += x * left[0];
-            for (int c = 0; c < 3; ++c) a[c] += x * left[static_cast<std::size_t>(c) + 1];
-            size = glm::max(size, glm::abs(x));
-        }
-    }
-    [[nodiscard]] Vec3 rest(const EdgeKind& kind, std::span<const Vec3> values, std::size_t k) const {
-        const auto& map = kind.characteristic[k];
-        return values[k] - values[0] - center - a[0] * map[0] - a[1] * map[1] - a[2] * map[2];
-    }
-};
-
-double frobenius(const Mat3& m) {
-    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-}
-
-}  // namespace
-
-bool proves_segment(const EdgeKind& kind, std::span<const Vec3> points, std::span<const Vec3> motion, double error) {
-    if (!kind.is_bounded() || points.size() != kind.weights.size()) return false;
-    const Fit fit(kind, points), moved(kind, motion);
-    const Mat3& a = fit.a;
-    const double det = glm::determinant(a);
-    if (!(det > 1e-12 * glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]))) return false;
-    const Mat3 inverse = glm::inverse(a);  // q = inverse · ρ, with A transposed
-    double height = 0, residual = 0;
-    const Mat3 unit = inverse * a - Mat3(1.0);
-    for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) {
-            height += std::abs(inverse[c][r]);
-            residual += std::abs(unit[c][r]);
-        }
-    }
-    constexpr double kOfRests = 1e-8;  // of L, χ and of sums of some hundred products
-    const Vec3 size = fit.size + moved.size;
-    const Mat3 turning = inverse * moved.a;  // N, transposed
-    const double turned = motion.empty() ? 0 : frobenius(turning) + kOfRests * height * (size.x + size.y + size.z);
-    if (!(turned < 0.9)) return false;
-    const double factor = turned / (1 - turned);  // of (1 + s N)⁻¹ − 1
-    const double slack = kind.spread * (2 * error + kOfRests * std::max({size.x, size.y, size.z})) * height * (1 + factor);
-    if (!(residual < 1e-6) || !(slack < 1e-2)) return false;
-    double across = 0, along = 0;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const Vec3 q = inverse * fit.rest(kind, points, k);
-        const Vec3 r = motion.empty() ? Vec3(0.0) : inverse * moved.rest(kind, motion, k) - turning * q;
-        const double more = factor * glm::length(r);
-        across = std::max(across, (std::hypot(q.x, q.y) + std::hypot(r.x, r.y) + more) / kind.weights[k]);
-        along = std::max(along, (std::abs(q.z) + std::abs(r.z) + more) / kind.weights[k]);
-    }
-    const auto with_error = [&](double q) { return (q + 2 * slack * (1 + across + along)) * (1 + 1e-5); };
-    return kind.across * with_error(across) + kind.along * with_error(along) < 1;
 }
 
 }  // namespace subvol::detail

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -98,13 +99,9 @@ std::optional<Subspace> subspace_of(const MatrixXd& step) {
     return found;
 }
 
-double spectral_norm(const Matrix3d& matrix) {
-    return up(matrix.norm());  // at least
-}
-
-// The spread of three rows over a window: for each point the length of its column, times its weight if the rows are scaled.
+// The spread of some rows over a window: for each point the length of its column, times its weight if the rows are scaled.
 double size_of_rows(const Eigen::Ref<const RowsXd>& rows) {
-    return (rows.row(0).array().square() + rows.row(1).array().square() + rows.row(2).array().square()).sqrt().sum();
+    return rows.colwise().norm().sum();
 }
 
 /// Rows of a spline cell's derivatives, as Bernstein coefficients of degree 3; scaled.
@@ -166,15 +163,16 @@ double cell_reach(const RowsXd& rows, const MatrixXd& map, double row_norm, doub
 class SegmentReach {
 public:
     SegmentReach(const SegmentRules& rules, const MatrixXd& map) : rules_(rules), map_(map) {
-        const auto count = static_cast<Eigen::Index>(rules.kind->weights.size());
-        left_.resize(count, 4);
-        characteristic_.resize(count, 3);
+        const EdgeKind& kind = *rules.kind;
+        const auto count = static_cast<Eigen::Index>(kind.weights.size());
+        left_.resize(count, 6);
+        kept_.resize(count, 5);
         for (Eigen::Index k = 0; k < count; ++k) {
-            for (Eigen::Index c = 0; c < 4; ++c)
-                left_(k, c) = rules.kind->left[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
-            for (Eigen::Index c = 0; c < 3; ++c) {
-                characteristic_(k, c) = rules.kind->characteristic[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
-            }
+            const auto p = static_cast<std::size_t>(k);
+            const auto& left = kind.left[p];
+            const auto& map_of_edge = kind.characteristic[p];
+            left_.row(k) << left[0], left[1], left[2], left[3], kind.slow_left[p][0], kind.slow_left[p][1];
+            kept_.row(k) << map_of_edge[0], map_of_edge[1], map_of_edge[2], kind.slow[p][0], kind.slow[p][1];
         }
     }
 
@@ -199,34 +197,42 @@ public:
 private:
     // By the constants of the edge, for all q with |q| ≤ r.
     [[nodiscard]] double at_once(const RowsXd& rows) const {
+        const EdgeKind& kind = *rules_.kind;
         const MatrixXd base = rows * map_, fit = left_.transpose() * base;
         const RowsXd fits = left_.transpose() * rows;
-        const Matrix3d a = fit.bottomRows(3);
+        const Matrix3d a = fit.middleRows(1, 3);
         if (!(a.determinant() > 1e-9 * a.row(0).norm() * a.row(1).norm() * a.row(2).norm())) return 0;
         const Matrix3d inverse = a.inverse();
-        const double height = spectral_norm(inverse), height_across = up(inverse.leftCols(2).norm()),
+        const double height = up(inverse.norm()), height_across = up(inverse.leftCols(2).norm()),
                      height_along = up(inverse.col(2).norm());
-        const double fitted = up(size_of_rows(fits.bottomRows(3)));
-        const MatrixXd rest = (base.rowwise() - fit.row(0)) - characteristic_ * a;
-        const MatrixXd q = rest * inverse;
+        const double fitted = up(size_of_rows(fits.middleRows(1, 3))), fitted_slow = up(size_of_rows(fits.bottomRows(2)));
+        const MatrixXd rest = (base.rowwise() - fit.row(0)) - kept_ * fit.bottomRows(5);
+        const MatrixXd q = rest * inverse, slow = fit.bottomRows(2) * inverse;
         RowsXd rests = rows.rowwise() - fits.row(0);
-        rests -= characteristic_ * fits.bottomRows(3);
+        rests -= kept_ * fits.bottomRows(5);
         const VectorXd sizes = rests.cwiseAbs().rowwise().sum();
-        constexpr double kRounded = 1e-8;  // of L, χ and all sums, for numbers of the size of some cells
-        const double rounded = kRounded * rules_.kind->spread * height * (1 + base.cwiseAbs().maxCoeff());
+        constexpr double kRounded = 1e-8;  // of L, χ, ψ and all sums, for numbers of the size of some cells
+        const double rounded = kRounded * kind.spread * height * (1 + base.cwiseAbs().maxCoeff());
+        const double slow_across = spectral_norm(slow.leftCols(2)), slow_along = slow.col(2).norm();
         const auto passes = [&](double r) {
             const double beta = height * fitted * r + rounded;
             if (!(beta < 0.5)) return false;
+            const double factor = beta / (1 - beta);
             double across = 0, along = 0;
             for (Eigen::Index k = 0; k < q.rows(); ++k) {
-                const double d = rules_.kind->weights[static_cast<std::size_t>(k)];
+                const double d = kind.weights[static_cast<std::size_t>(k)];
                 const double y12 = std::hypot(q(k, 0), q(k, 1)) + height_across * sizes(k) * r + rounded;
                 const double y3 = std::abs(q(k, 2)) + height_along * sizes(k) * r + rounded;
-                const double mixed = std::hypot(y12, y3) * beta / (1 - beta);
+                const double mixed = std::hypot(y12, y3) * factor;
                 across = std::max(across, (y12 + mixed) / d);
                 along = std::max(along, (y3 + mixed) / d);
             }
-            return rules_.kind->across * across + rules_.kind->along * along < 0.999;
+            const double c12 = slow_across + height_across * fitted_slow * r + rounded;
+            const double c3 = slow_along + height_along * fitted_slow * r + rounded;
+            const double mixed = std::hypot(std::numbers::sqrt2 * c12, c3) * factor;
+            const double bend_across = kind.slow_size * (c12 + mixed), bend_along = kind.slow_size * (c3 + mixed);
+            return bend_across < 1 &&
+                   across * (kind.across + bend_along * kind.along) / (1 - bend_across) + kind.along * along < 0.999;
         };
         constexpr double kMost = 0.25;
         constexpr int kTries = 10;
@@ -239,7 +245,7 @@ private:
 
     const SegmentRules& rules_;
     const MatrixXd& map_;
-    MatrixXd left_, characteristic_;
+    MatrixXd left_, kept_;  // of 1, χ and ψ; χ and ψ
 };
 
 }  // namespace

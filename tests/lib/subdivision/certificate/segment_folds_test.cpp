@@ -161,6 +161,61 @@ TEST(EdgeKind, NothingIsProvedFalsely) {
     }
 }
 
+// The largest multiple of χ + ψ C + q' that is proved does not fold, and such data without q' are proved for a good part of the
+// way to the first fold.
+TEST(EdgeKind, SlowDataAreProvedUntilTheyNearlyFold) {
+    std::mt19937 dice(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (const Scheme scheme : {Scheme::Bsxw, Scheme::CatmullClark}) {
+        for (const std::size_t m : {5UL, 6UL, 8UL}) {
+            const EdgeRules rules = edge_rules(scheme, m);
+            const Ring ring(rules);
+            const EdgeKind& kind = edge_kind(scheme, m);
+            for (int n = 0; n < 6; ++n) {
+                const double of_rest = n % 2 == 0 ? 0 : 0.02;
+                std::array<Vec3, 2> c{Vec3(unit(dice), unit(dice), unit(dice)), Vec3(unit(dice), unit(dice), unit(dice))};
+                if (n % 4 == 0) c[0].z = c[1].z = 0;
+                std::vector<Vec3> change;
+                for (std::size_t p = 0; p < kind.weights.size(); ++p) {
+                    const Vec3 rest(unit(dice), unit(dice), unit(dice));
+                    change.push_back(c[0] * kind.slow[p][0] + c[1] * kind.slow[p][1] + rest * (of_rest * kind.weights[p]));
+                }
+                const auto window = [&](double t) {
+                    std::vector<Vec3> points;
+                    for (std::size_t p = 0; p < change.size(); ++p) {
+                        const auto& x = kind.characteristic[p];
+                        points.push_back(Vec3(x[0], x[1], x[2]) + change[p] * t);
+                    }
+                    return points;
+                };
+                const auto first_failure = [](int steps, const auto& passes) {
+                    double low = 0, high = 4;
+                    for (int k = 0; k < steps; ++k) {
+                        const double t = (low + high) / 2;
+                        (passes(t) ? low : high) = t;
+                    }
+                    return low;
+                };
+                const auto least = [&](double t) {
+                    std::mt19937 places(static_cast<unsigned>(n));
+                    const std::vector<Vec3> points = window(t);
+                    Ring::Points rows(static_cast<Eigen::Index>(points.size()), 3);
+                    for (std::size_t p = 0; p < points.size(); ++p) {
+                        rows.row(static_cast<Eigen::Index>(p)) << points[p].x, points[p].y, points[p].z;
+                    }
+                    return least_determinant(ring, m, rows, 300, places);
+                };
+                const double proved = first_failure(20, [&](double t) { return proves_segment(kind, window(t), {}, 0); });
+                EXPECT_GT(proved, 0) << name_of(scheme, m);
+                EXPECT_GT(least(proved), 0) << name_of(scheme, m) << " " << n;
+                if (of_rest > 0) continue;
+                const double folds = first_failure(7, [&](double t) { return least(t) > 0; });
+                EXPECT_GT(proved, 0.25 * folds) << name_of(scheme, m) << " " << n;
+            }
+        }
+    }
+}
+
 // The derivative along the edge is below 0 between 0.2976 and 0.3024 of the segment alone, where no corner of a cell of level 7
 // or coarser lies.
 TEST(EdgeKind, FoldsOfFineLevelsAreNotProved) {

@@ -27,10 +27,6 @@ inline std::string name_of(Scheme scheme, std::size_t cells) {
     return (scheme == Scheme::Bsxw ? "bsxw " : "cc ") + std::to_string(cells);
 }
 
-inline EdgeKind kind_of(Scheme scheme, std::size_t cells) {
-    return make_edge_kind(edge_rules(scheme, cells), scheme == Scheme::Bsxw);
-}
-
 // A star: sectors of reach × reach cells about an edge, in layers. Sectors are as wide as each other.
 struct StarMesh {
     Star star;
