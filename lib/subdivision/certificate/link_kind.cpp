@@ -382,9 +382,9 @@ bool proves_point(const LinkKind& kind, std::span<const Vec3> points, std::span<
         return (rests[level].rowwise().norm() + changes[level].rowwise().norm()).cwiseQuotient(kind.weights).maxCoeff();
     };
     const double turned_change = factor * changes[0].rowwise().norm().cwiseQuotient(kind.weights).maxCoeff();
-    // How many shells there are until q is small enough; with many, refinement of the mesh is quicker. Errors of q grow as q
-    // does, and each level adds some roundings.
-    constexpr std::size_t kMostShells = 24;
+    // How many shells there are until q is small enough: some fifty where the rest falls slowly. Errors of q grow as q does,
+    // and each level adds some roundings.
+    constexpr std::size_t kMostShells = 64;
     const auto off_at = [&](std::size_t level) {
         const double steps = 1 + 4 * static_cast<double>(level) * kind.growth * (1 + size_at(0));
         return (2 * slack + turned_change) * kind.growth + steps * kOfSteps;
