@@ -86,7 +86,7 @@ public:
         HexMesh mesh = report.unpack(load_mesh(input_, common(), report.progress(), sets));
         if (mend_) return mend(std::move(mesh), sets, options, report);
         const FoldCheck found = report.timed("check", [&] { return check_folds(mesh, options); });
-        put(found, mesh.cells.size(), report);
+        put(found, options.scheme.kind, mesh.cells.size(), report);
         return found.report.folded > 0 ? 1 : 0;
     }
 
@@ -209,7 +209,7 @@ private:
         report.say(text("before        ", counted(done.before.folded, "folded cell"), ", ", done.before.open, " undecided"));
         report.say(text("moved         ", counted(done.moved, "point"), ", at most by ", done.farthest_edges,
                         " of their shortest edge (", done.boundary_edges, " on the boundary)"));
-        put(mended.check, mended.mesh.cells.size(), report);
+        put(mended.check, options.scheme.kind, mended.mesh.cells.size(), report);
         constexpr std::size_t kShown = 5;
         for (std::size_t k = 0; k < std::min(kShown, done.left.size()); ++k) {
             report.warn(text("cell ", done.left[k].cell, " could not be mended: ", done.left[k].reason));
@@ -218,12 +218,12 @@ private:
         return mended.check.report.folded > 0 ? 1 : 0;
     }
 
-    static void put(const FoldCheck& found, std::size_t cells, Report& report) {
+    static void put(const FoldCheck& found, Scheme scheme, std::size_t cells, Report& report) {
         const FoldReport& all = found.report;
         report.merge(facts_of(all));
         report["tests"] = all.tests;
         report["places"] = places_of(found);
-        say(found, cells, report);
+        say(found, scheme, cells, report);
     }
 
     static Json places_of(const FoldCheck& found) {
@@ -238,7 +238,7 @@ private:
         return places;
     }
 
-    static void say(const FoldCheck& found, std::size_t cells, Report& report) {
+    static void say(const FoldCheck& found, Scheme scheme, std::size_t cells, Report& report) {
         const FoldReport& all = found.report;
         const auto line = [&](std::string name, const std::string& value) {
             constexpr std::size_t kNames = 14;
@@ -261,7 +261,7 @@ private:
         if (all.irregular > 0) {
             line("irregular", text(counted(all.irregular, "cell"), " near irregular edges, of which the volume of ",
                                    all.irregular_volume, " cells is open",
-                                   options_.scheme.kind == Scheme::Mcq ? "; only limits of cc and bsxw are decided there" : ""));
+                                   scheme == Scheme::Mcq ? "; only limits of cc and bsxw are decided there" : ""));
         }
         if (all.sampled.cells > 0) line("sampled", text(counted(all.sampled.cells, "undecided cell"), ": ", sample_text(all)));
         line("verdict", report["verdict"].get<std::string>());
