@@ -209,7 +209,7 @@ private:
         report.say(text("before        ", counted(done.before.folded, "folded cell"), ", ", done.before.open, " undecided"));
         report.say(text("moved         ", counted(done.moved, "point"), ", at most by ", done.farthest_edges,
                         " of their shortest edge (", done.boundary_edges, " on the boundary)"));
-        put(mended.check, options.scheme.kind, mended.mesh.cells.size(), report);
+        put(mended.check, folds.scheme.kind, mended.mesh.cells.size(), report);
         constexpr std::size_t kShown = 5;
         for (std::size_t k = 0; k < std::min(kShown, done.left.size()); ++k) {
             report.warn(text("cell ", done.left[k].cell, " could not be mended: ", done.left[k].reason));
