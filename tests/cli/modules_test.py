@@ -81,7 +81,7 @@ class Installation(InFolder):
         self.module("openimageio").write_bytes(b"not a library")
         done = self.run_installed("compare", "model.png", "model.png")
         self.assertEqual(done.code, 2)  # there is no such picture: that comes first
-        shutil.copy(Path(__file__).parents[2] / "docs/pawn.png", self.folder / "a.png")
+        shutil.copy(Path(__file__).parents[2] / "docs/nozzle.png", self.folder / "a.png")
         done = self.run_installed("compare", "a.png", "a.png")
         self.assertEqual(done.code, 3)
         self.assertRegex(done.err, r"^subvol: .*subvol_openimageio.so, which cannot be loaded: [^\n]+\n$")
