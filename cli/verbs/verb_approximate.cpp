@@ -13,6 +13,7 @@
 // the mesh while they stay the same, and says how often it had to find them. The exit code is 1 if a fitted shape is not
 // sound.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -365,8 +366,9 @@ private:
     /// before: the names
     static void say_fields(const ApproximateReport& found, const std::string& before, Report& report) {
         for (const FieldError& error : found.fields) {
-            report.say(text(before, error.name, ": error ", error.rms, " RMS, at the boundary ", error.rms_boundary,
-                            ", at most ", error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
+            report.say(text(before, error.name, ": error ", error.rms, " RMS, ",
+                            std::isnan(error.rms_boundary) ? "" : text("at the boundary ", error.rms_boundary, ", "),
+                            "at most ", error.max, " at ", error.max_at.x, ", ", error.max_at.y, ", ", error.max_at.z,
                             "; the data's range is ", error.range));
             const Vec3& at = error.max_between_at;
             report.say(text(before, error.name, ": between the samples ", error.rms_between, " RMS from ",

@@ -36,7 +36,7 @@ def approximate(
     mesh are known between its points, too: where these are too few for the control mesh, more places are sampled.
     Returns the control mesh with the fitted fields, and a report: samples, between (places between the points of the data), outside,
     snapped, unseen, undecided (control points that samples hardly decide, where no error is known), iterations, refined, continuous (the
-    data is a mesh), and for each of fields rms, rms_boundary, max, max_at and range; rms_between, max_between and max_between_at, the
+    data is a mesh), and for each of fields rms, rms_boundary (nan without samples in cells at the boundary), max, max_at and range; rms_between, max_between and max_between_at, the
     distance from the data between the samples, or from the nearest sample if the data is not a mesh; and beyond, how far the limit leaves
     the range of the data.
 

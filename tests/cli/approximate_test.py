@@ -101,6 +101,16 @@ class Approximate(InFolder):
         at = self.run_ok("probe", "fitted.vtu", "--at", ".95,.5,.5", "--field", "T", "--json").json()
         self.assertAlmostEqual(at["values"][0]["value"], 9 * .95, 5)  # a linear function is continued
 
+    def test_an_error_at_the_boundary_is_one_of_samples_there(self):
+        (self.folder / "box.vtk").write_text(box_of_cells(4))
+        inside = [f"{x},{y},{z},{x * x}" for x in (.3, .5, .7) for y in (.3, .5, .7) for z in (.3, .5, .7)]
+        for more, known in ([], False), (["0.1,0.5,0.5,7"], True):
+            (self.folder / "few.csv").write_text("\n".join(["x,y,z,T", *inside, *more, ""]))
+            done = self.run_ok("approximate", "few.csv", "--onto", "box.vtk", "-o", "fitted.vtu")
+            self.assertEqual("at the boundary" in done.out, known)
+            found = self.run_ok("approximate", "few.csv", "--onto", "box.vtk", "-o", "fitted.vtu", "--json").json()["fields"]["T"]
+            self.assertEqual(found["rms_boundary"] is not None, known)
+
     def test_clamp(self):
         rows = [f"{x / 9},{y / 9},{z / 9},{int(x + y > 9)}" for x in range(10) for y in range(10) for z in range(10)]
         (self.folder / "box.vtk").write_text(box_of_cells(4))

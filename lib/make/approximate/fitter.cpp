@@ -182,7 +182,7 @@ public:
         FieldError error = error_;
         error.name = name;
         error.rms = root_mean(squares_, count_);
-        error.rms_boundary = root_mean(squares_of_boundary_, boundary_count_);
+        if (boundary_count_ > 0) error.rms_boundary = root_mean(squares_of_boundary_, boundary_count_);
         return error;
     }
 

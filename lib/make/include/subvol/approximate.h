@@ -44,8 +44,9 @@ struct ApproximateOptions {
 /// How far the limit is from the samples of a field.
 struct FieldError {
     std::string name;
-    double rms = 0;                                         ///< over all samples and channels
-    double rms_boundary = 0;                                ///< over the samples in cells at the boundary
+    double rms = 0;  ///< over all samples and channels
+    /// Over the samples in cells at the boundary; not a number if there are none
+    double rms_boundary = std::numeric_limits<double>::quiet_NaN();
     double max = 0;                                         ///< over all samples and channels
     double range = 0;                                       ///< range of the samples
     Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};  ///< the sample where the limit is farthest
