@@ -4,7 +4,8 @@
 //     plane ─► raster of places, each with its cell and value ─┬─► colours, contour lines, labels, axes, legend ─► picture
 //                                                              └─► squares and lines, or a row for each place  ─► .vtp, .csv
 //
-// Places outside the volume have no cell and stay empty. N contours lie at min + (max − min) c / (N + 1), c from 1 to N. Area,
+// Places outside the volume have no cell and stay empty. N contours lie at min + (max − min) c / (N + 1), c from 1 to N; others
+// at round values, or where they are asked for. Area,
 // mean and extremes on the plane are given of the limit, and beside them of the cells as the file has them; of a mesh in
 // memory the extremes are searched for between the places, of bricks they are those of the places. Contour lines are light on
 // dark colours and dark on light ones. The coordinates along a side are x, y or z where the side is parallel to one of them.
@@ -28,12 +29,14 @@
 #include "refine_arguments.h"
 #include "subvol/color_name.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
 #include "subvol/measure.h"
 #include "subvol/option.h"
 #include "subvol/overlay.h"
+#include "subvol/picture_look.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -59,6 +62,7 @@ public:
               program, "slice", "Sample a field on a plane and write an image, a surface or a table.",
               "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
+              "  subvol slice part.vtu -o slice.png --contours 300,350,400 --contour-labels --title Inlet\n"
               "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
               "\n"
               "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
@@ -75,9 +79,11 @@ public:
                        .help("PX,PY,PZ,NX,NY,NZ", "a point of the plane and its normal (default: the box's centre, and z)"))
             ->transform(number_list(6, "0,0,0,0,0,1: a point of the plane and its normal"));
         add_options(app(), options_of(options_));
-        add_option(app(), Option("contours", contours_)
-                              .between(1, 1000)
-                              .help("N", "lines at this many values between the least and the largest on the plane"));
+        add_option(app(),
+                   Option("contours", contours_)
+                       .help("N|V,V,…|round",
+                             "lines at N values between the least and the largest on the plane, at values or per cents of "
+                             "that range (one: V,), or at round values"));
         add_option(app(), Option("contour-labels", contour_labels_).help("write the values of --contours on the lines"));
         add_option(
             app(),
@@ -98,6 +104,7 @@ public:
         for (const Option& option : options_of(choices_)) {
             if (std::ranges::find(kShape, option.name) != kShape.end()) add_option(app(), option);
         }
+        add_option(app(), Option("title", title_).help("TEXT", "a line of text above the picture"));
         add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
         add_option(app(), Option("no-legend", no_legend_).help("the picture alone"));
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
@@ -109,6 +116,7 @@ public:
         check_output(output_, {".png", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_color(background_, "--background");
         check_notes();
+        (void)contour_values({.min = 0, .max = 1});
         // What is wrong with these is said before the slice is computed.
         if (range_) (void)parse_range(*range_, {.min = 0, .max = 1}, "--range");
         (void)find_transfer_function(function_, {.min = 0, .max = 1});
@@ -116,8 +124,8 @@ public:
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
         const LimitSlice slice = this->slice(plane, report);
-        std::vector<double> values;
-        for (int c = 0; c < contours_; ++c) values.push_back(slice.min + (slice.max - slice.min) * (c + 1) / (contours_ + 1));
+        const std::vector<double> values = contour_values({.min = slice.min, .max = slice.max});
+        warn_of_empty_lines(values, slice, report);
         const auto lines = contour_lines(slice, values);
         if (output_.ends_with(".vtp") || output_.ends_with(".csv")) {
             write_slice(output_, slice, lines);
@@ -132,7 +140,7 @@ public:
         report["step"] = glm::length(slice.right);
         report["inside"] = slice.inside;
         say_figures(slice, report);
-        if (contours_ > 0) report["contours"] = values;
+        if (contours_) report["contours"] = values;
         return 0;
     }
 
@@ -222,17 +230,20 @@ private:
         const Vec3 point(plane[0], plane[1], plane[2]);
         const PictureScale across = scale_of(slice.right, slice.place(-0.5, 0), slice.width, point, "s");
         const PictureScale up = scale_of(-slice.down, slice.place(0, slice.height - 0.5), slice.height, point, "t");
-        const PlotMargins margins = axes_ ? plot_margins_px(slice.height, up) : PlotMargins{};
+        const PlotMargins margins_of_axes = axes_ ? plot_margins_px(slice.height, up) : PlotMargins{};
+        PlotMargins margins = margins_of_axes;
+        const double letter = std::clamp(slice.height / 40.0, 9.0, 60.0), title_letter = 1.4 * letter;
+        if (!title_.empty()) margins.top += static_cast<int>(std::ceil(1.8 * title_letter));
         int extra = 0;
         const int width = margins.left + slice.width + margins.right;
         int height = slice.height + margins.top + margins.bottom;
         if (png && !no_legend_) {
             height = std::max(height, kLeastLegend_px);
             extra = legend_extent_px(function, legend, {.width = width}, height);
-            Facts facts;
-            warn_of_boxes(std::array{legend.title}, facts);
-            report.merge(facts);
         }
+        Facts facts;
+        warn_of_boxes(std::array{extra > 0 ? legend.title : std::string(), title_}, facts);
+        report.merge(facts);
         const int left = margins.left;
         Image image(width, height);
         const int top = margins.top + (height - slice.height - margins.top - margins.bottom) / 2;
@@ -256,7 +267,10 @@ private:
                           {.width_px = 1.25, .color = dark ? Vec3(1.0) : Vec3(0.0), .alpha = 0.75});
             }
         }
-        const double letter = std::clamp(slice.height / 40.0, 9.0, 60.0);
+        if (!title_.empty()) {
+            draw_text(image, {left + 0.2 * title_letter, top - margins_of_axes.top - 0.6 * title_letter},
+                      cut_text(title_, title_letter, slice.width + margins.right), {.size_px = title_letter, .color = ink});
+        }
         if (contour_labels_) label_lines(image, lines, Vec2(0.5 + left, 0.5 + top), letter);
         if (axes_) draw_scales(image, {left, top, slice.width, slice.height}, across, up, ink);
         if (extremes_) mark_extremes(image, slice, Vec2(0.5 + left, 0.5 + top), letter, report);
@@ -267,13 +281,64 @@ private:
         report.timed("write", [&] { write_image(output_, image, background); });
     }
 
+    /// The values of the lines for the range of a plane.
+    ///
+    /// throws: Error(InvalidInput) if --contours has neither a number of lines nor values
+    [[nodiscard]] std::vector<double> contour_values(const Range& range) const {
+        std::vector<double> values;
+        if (!contours_) return values;
+        constexpr int kMost = 1000, kRound = 11;
+        if (*contours_ == "round") {
+            if (!(range.min < range.max)) return values;
+            for (const detail::Tick& tick : detail::round_ticks(range.min, range.max, kRound)) {
+                const double end = 1e-3 * (range.max - range.min);  // lines there would be a few pixels at most
+                if (tick.value > range.min + end && tick.value < range.max - end) values.push_back(tick.value);
+            }
+            return values;
+        }
+        if (!contours_->empty() && std::ranges::all_of(*contours_, [](char c) { return c >= '0' && c <= '9'; })) {
+            const double count = parse_number("--contours", *contours_);
+            if (!(count >= 1 && count <= kMost)) {
+                throw Error(ErrorCode::InvalidInput, text("\"", *contours_, "\" is not a number of lines from 1 to ", kMost),
+                            "--contours", text(*contours_, ",: one line at that value"));
+            }
+            for (int c = 0; c < static_cast<int>(count); ++c)
+                values.push_back(range.min + (range.max - range.min) * (c + 1) / (count + 1));
+            return values;
+        }
+        const ValueRange whole{.min = range.min, .max = range.max};
+        for (std::size_t begin = 0; begin < contours_->size();) {
+            const std::size_t end = std::min(contours_->find(',', begin), contours_->size());
+            values.push_back(parse_value(contours_->substr(begin, end - begin), whole, "--contours"));
+            begin = end + 1;
+        }
+        if (values.empty() || values.size() > kMost) {
+            throw Error(ErrorCode::InvalidInput, "takes a number of lines, values with commas between them, or round",
+                        "--contours", "10, or 300,350,400");
+        }
+        return values;
+    }
+
+    /// Says which lines no place of the plane is on.
+    static void warn_of_empty_lines(const std::vector<double>& values, const LimitSlice& slice, Report& report) {
+        std::string list;
+        for (const double value : values) {
+            if (!(value >= slice.min && value <= slice.max)) list += (list.empty() ? "" : ", ") + detail::number_text(value, 6);
+        }
+        if (!list.empty())
+            report.warn(text("no place of the plane has the value of --contours ", list, ": they are from ", slice.min, " to ",
+                             slice.max));
+    }
+
     /// throws: Error(InvalidInput) if something is to be drawn into a file that is not a picture
     void check_notes() const {
-        if (contour_labels_ && contours_ == 0)
+        if (contour_labels_ && !contours_)
             throw Error(ErrorCode::InvalidInput, "has no lines to label", "--contour-labels", "--contours N");
         if (output_.ends_with(".png") || output_.ends_with(".exr")) return;
-        for (const auto& [given, name] :
-             {std::pair{contour_labels_, "--contour-labels"}, {axes_, "--axes"}, {extremes_, "--extremes"}}) {
+        for (const auto& [given, name] : {std::pair{contour_labels_, "--contour-labels"},
+                                          {axes_, "--axes"},
+                                          {extremes_, "--extremes"},
+                                          {!title_.empty(), "--title"}}) {
             if (given) throw Error(ErrorCode::InvalidInput, "is drawn into pictures", name, "-o NAME.png or .exr");
         }
     }
@@ -336,7 +401,8 @@ private:
     SliceFigures limit_figures_, file_;  // file_: of the cells as they were given
     SliceOptions options_;
     LookChoices choices_;  // the shape of the colours alone
-    int contours_ = 0;
+    std::optional<std::string> contours_;
+    std::string title_;
     bool no_legend_ = false, axes_ = false, extremes_ = false, contour_labels_ = false;
     RefineArguments scheme_;
 };

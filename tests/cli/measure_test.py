@@ -216,6 +216,27 @@ class Slice(Refusing):
             self.assertGreater((self.folder / name).stat().st_size, 500)
         self.assertAlmostEqual(made["inside"] * made["step"]**2, math.pi, delta=.25)
 
+    def test_contours_at_values_and_a_title(self):
+        def made(*words, fails=False):
+            done = subvol("slice", "model:ball:4", "-o", "c.png", "--resolution", 64, "--density", "300+100*x", "--json", *words, folder=self.folder)
+            return done if fails else done.json()
+        plain = made()
+        size = plain["height"]
+        self.assertEqual(made("--contours", "260,350.5")["contours"], [260, 350.5])
+        self.assertAlmostEqual(made("--contours", "25%,")["contours"][0], .75 * plain["min"] + .25 * plain["max"])
+        self.assertEqual(made("--contours", "round")["contours"], [220, 240, 260, 280, 300, 320, 340, 360, 380])
+        beyond = made("--contours", "350,900,")
+        self.assertEqual(beyond["contours"], [350, 900])
+        self.assertIn("no place of the plane has the value of --contours 900", beyond["warnings"][0])
+        for wrong, naming in ("0", "0,: one line"), ("2000", "2000,: one line"), ("few", "few"), ("1,,2", "not a number"), ("", "300,350"):
+            done = made("--contours", wrong, fails=True)
+            self.assertEqual((done.code, naming in done.err), (2, True), done.err)
+        made("--title", "x")  # above the picture, whose places are as they were
+        width, height = struct.unpack(">II", (self.folder / "c.png").read_bytes()[16:24])
+        self.assertGreater(height, size)
+        done = subvol("slice", BOX, "-o", "a.csv", "--title", "x", folder=self.folder)
+        self.assertEqual((done.code, "--title" in done.err), (2, True), done.err)
+
     def test_coordinates_labels_and_marks(self):
         plain = self.run_ok("slice", "model:ball:4", "-o", "a.png", "--resolution", 200, "--contours", 4, "--density", "x", "--json").json()
         sizes = set()
