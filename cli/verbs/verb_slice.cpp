@@ -62,7 +62,7 @@ public:
               program, "slice", "Sample a field on a plane and write an image, a surface or a table.",
               "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
-              "  subvol slice part.vtu -o slice.png --contours 300,350,400 --contour-labels --title Inlet\n"
+              "  subvol slice part.vtu -o slice.png --contours 300,350 --title Inlet\n"
               "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
               "\n"
               "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
