@@ -190,6 +190,67 @@ Json json_of_field(const Field& field) {
             {"file_max_at", place_of(field.given.max)}};
 }
 
+/// Where the bins of a histogram begin and end: between the extremes of the whole, evenly.
+std::vector<double> edges_of(const FieldMeasure& whole) {
+    const std::size_t bins = whole.histogram.size();
+    std::vector<double> edges(bins + 1, whole.max.value);
+    for (std::size_t k = 0; k < bins; ++k) {
+        edges[k] = whole.min.value + (whole.max.value - whole.min.value) * static_cast<double>(k) / static_cast<double>(bins);
+    }
+    return edges;
+}
+
+/// A row for each bin of each field, of the whole and of each part.
+void write_histograms(const LimitMeasure& found, const std::string& file) {
+    using detail::exact_text;
+    std::string table = "part,field,from,to,volume\n";
+    const auto add = [&](const PartMeasure& part, const std::string& name) {
+        for (std::size_t f = 0; f < part.fields.size(); ++f) {
+            const std::vector<double> edges = edges_of(found.whole.fields[f]);
+            const FieldMeasure& field = part.fields[f];
+            for (std::size_t k = 0; k < field.histogram.size(); ++k) {
+                table += csv_text(name) + "," + csv_text(field.name) + "," + exact_text(edges[k]) + "," +
+                         exact_text(edges[k + 1]) + "," + exact_text(field.histogram[k]) + "\n";
+            }
+        }
+    };
+    add(found.whole, "");
+    for (const PartMeasure& part : found.parts) add(part, part.name);
+    detail::write_text_file(file, table);
+}
+
+/// The volume over the value, in steps: of the whole, or a line for each part.
+void write_histogram_plot(const LimitMeasure& found, const std::string& file) {
+    if (found.whole.fields.size() != 1) {
+        throw Error(ErrorCode::InvalidInput,
+                    "a plot of a histogram has one field, and here there are " + std::to_string(found.whole.fields.size()),
+                    file, "--field NAME, or a .csv file, which takes all");
+    }
+    const FieldMeasure& whole = found.whole.fields.front();
+    const std::vector<double> edges = edges_of(whole);
+    std::vector<PlotLine> lines;
+    const auto add = [&](const FieldMeasure& field, const std::string& name) {
+        PlotLine line{name, {edges.front()}, {0}};
+        line.marked = false;
+        for (std::size_t k = 0; k < field.histogram.size(); ++k) {
+            line.x.insert(line.x.end(), {edges[k], edges[k + 1]});
+            line.y.insert(line.y.end(), 2, field.histogram[k]);
+        }
+        line.x.push_back(edges.back());
+        line.y.push_back(0);
+        lines.push_back(std::move(line));
+    };
+    if (found.parts.empty()) add(whole, whole.name);
+    for (const PartMeasure& part : found.parts) add(part.fields.front(), part.name);
+    detail::write_text_file(file,
+                            plot_svg_file({.title = "",
+                                           .x_label = whole.name,
+                                           .y_label = "volume in each of " + std::to_string(whole.histogram.size()) + " ranges",
+                                           .log_x = false,
+                                           .log_y = false,
+                                           .lines = lines}));
+}
+
 Json as_json(const PartMeasure& part) {
     Json one;
     if (!part.name.empty()) one["name"] = part.name;
@@ -273,6 +334,8 @@ Json json_of(const ProbeResult& found, const std::vector<Vec3>& places) {
 
 Json json_of(const LimitMeasure& found) {
     Json stats{{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
+    for (std::size_t f = 0; f < found.whole.fields.size(); ++f)
+        stats["whole"]["fields"][f]["histogram_edges"] = edges_of(found.whole.fields[f]);
     stats["folded_cells"] = found.folds.cells;
     for (const PartMeasure& part : found.parts) stats["parts"].push_back(as_json(part));
     return stats;
@@ -370,7 +433,9 @@ void show_patches(const std::vector<PatchMeasure>& found, const HexMesh& mesh, b
     report.all_said();
 }
 
-void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, Report& report) {
+void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, const std::string& file, Report& report) {
+    if (file.ends_with(".csv")) write_histograms(found, file);
+    if (file.ends_with(".svg")) write_histogram_plot(found, file);
     report["stats"] = json_of(found);
     warn_of_overflow(found.whole, report);
     if (of_file) warn_of_difference(found.whole, report);

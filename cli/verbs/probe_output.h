@@ -42,6 +42,7 @@ void show_patches(const std::vector<PatchMeasure>& found, const HexMesh& mesh, b
 ///
 /// mesh:    whose points are named; may be null
 /// of_file: a file has the cells, so that a limit that differs from them is worth a warning
-void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, Report& report);
+/// file:    of the histograms: a table (.csv) or a plot (.svg); empty: none
+void show_measured(const LimitMeasure& found, const HexMesh* mesh, bool of_file, const std::string& file, Report& report);
 
 }  // namespace subvol::cli

@@ -79,6 +79,7 @@ public:
                "  subvol probe part.vtu --line 0,0,0,1,0,0 --field T --field U.x -o two.svg\n"
                "  subvol probe part.vtu --points bolts.csv -o values.csv --json\n"
                "  subvol probe part.vtu --stats --field 'mises(STRESS)' --only box:0,0,0,1,1,2\n"
+               "  subvol probe part.vtu --stats --field T --bins 50 -o histogram.svg\n"
                "  subvol probe run.exo --at 0,0,1 --step all -o history.csv\n"
                "  subvol probe case --patch inlet --patch outlet --flux U\n"
                "\n"
@@ -86,7 +87,9 @@ public:
                "fields with value and gradient of each. Outside there is nothing: null. stats: folded_cells as far as seen, "
                "whole and parts, with "
                "volume, error (of the volume and of means, in parts of them and of ranges), and for each field, or for "
-               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram; with file_ "
+               "the one that --field names, integral, mean, min, max, their places, extreme_error, and a histogram (volumes; "
+               "of the "
+               "whole with histogram_edges); with file_ "
                "before the name the same of the cells as the file has them. With "
                "--step all or A-B: steps, each with step, time and values, stats or patches. patches: name, faces, area, "
                "error, normal (its integral), flux and throughput (of --flux, outward and without sign), fields with "
@@ -114,7 +117,7 @@ public:
                               .also("o")
                               .help("FILE",
                                     "a table (.csv) of all fields with gradients, or of the values of --field; or a plot along "
-                                    "the line (.svg)"));
+                                    "the line (.svg); of --stats the histogram"));
         scheme_.add_to(app(), "tetoct, boxspline: the level whose volume is probed (default 2)");
         set_essentials(
             {"--at", "--line", "--count", "--points", "--stats", "--patch", "--flux", "--output", "--field", "--json"});
@@ -161,7 +164,10 @@ public:
             } else {
                 if (!places.empty())
                     show_probed(probe(body, places, limit, report), places, chosen_, output_, common(), report);
-                if (stats_) show_measured(measure(body, limit.scheme, report), body.source().mesh(), !is_model(input_), report);
+                if (stats_) {
+                    show_measured(measure(body, limit.scheme, report), body.source().mesh(), !is_model(input_),
+                                  histogram_file(), report);
+                }
                 if (!patches_.empty()) {
                     const std::vector<PatchMeasure> found = patches_of(body, limit.scheme, report);
                     show_patches(found, *body.source().mesh(), !is_model(input_), report);
@@ -195,13 +201,19 @@ private:
         if (output_.empty()) return;
         check_output(output_, {".csv", ".svg"});
         if (asks_for_steps(common())) return;
+        if (!histogram_file().empty()) return;
         if (output_.ends_with(".svg") && (line_.empty() || !at_.empty() || !points_.empty())) {
             throw Error(ErrorCode::InvalidInput, "a plot needs --line, and no other places", output_, "a .csv file takes all");
         }
         if (line_.empty() && at_.empty() && points_.empty()) {
             throw Error(ErrorCode::InvalidInput, "a file of places needs --at, --line or --points", output_,
-                        "--stats and --patch print, with --json in full; with --step all there is a table");
+                        "--patch prints, with --json in full; with --step all there is a table");
         }
+    }
+
+    /// The output, if it is that of histograms: places have a table or a plot of their own.
+    [[nodiscard]] std::string histogram_file() const {
+        return stats_ && patches_.empty() && line_.empty() && at_.empty() && points_.empty() ? output_ : "";
     }
 
     /// The body with the field of --field first.
@@ -284,7 +296,7 @@ private:
         if (!stats_) return;
         const LimitMeasure measured = report.timed(
             "measure", [&] { return measure_limit(fine, cells, {.bins = measured_.bins, .progress = report.progress()}); });
-        show_measured(measured, nullptr, false, report);
+        show_measured(measured, nullptr, false, histogram_file(), report);
     }
 
     [[nodiscard]] LimitMeasure measure(const BodyInput& body, const SchemeOptions& scheme, Report& report) const {

@@ -154,7 +154,7 @@ Canvas::Series series_of(std::size_t index) {
 /// Whether the places of a line are marked: those of a curve with many would hide it.
 bool is_marked(const PlotLine& line) {
     constexpr std::size_t kManyPlaces = 50;
-    return line.x.size() <= kManyPlaces;
+    return line.marked && line.x.size() <= kManyPlaces;
 }
 
 std::string legend_words(const Plot& plot, const PlotLine& line) {

@@ -132,6 +132,34 @@ class Probe(Refusing):
         self.assertAlmostEqual(sum(field["histogram"]), whole["volume"], delta=1e-6)
         self.assertEqual(found["parts"], [])
 
+    def test_histograms_are_those_of_the_body(self):
+        def volume_below(value):  # of a ball, where x² is below a value
+            x = math.sqrt(min(max(value, 0), 1))
+            return 2 * math.pi * (x - x**3 / 3)
+        words = ["probe", "model:ball:6", "--stats", "--density", "x*x", "--bins", 8]
+        field = self.run_ok(*words, "-o", "h.csv", "--json").json()["stats"]["whole"]["fields"][0]
+        edges = field["histogram_edges"]
+        self.assertEqual((len(edges), edges[0], edges[-1]), (9, field["min"], field["max"]))
+        with open(self.folder / "h.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual([(float(row["from"]), float(row["to"])) for row in rows], list(zip(edges, edges[1:])))
+        for row, volume in zip(rows, field["histogram"]):
+            self.assertEqual((row["part"], row["field"], float(row["volume"])), ("", field["name"], volume))
+            self.assertAlmostEqual(volume, volume_below(float(row["to"])) - volume_below(float(row["from"])), delta=5e-3)
+        self.run_ok(*words, "-o", "h.svg")
+        self.assertIn("volume in each of 8 ranges", (self.folder / "h.svg").read_text())
+        (self.folder / "two.vtk").write_text(
+            "# vtk DataFile Version 3.0\nbox\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 8\n"
+            + "".join(f"SCALARS {name} double 1\nLOOKUP_TABLE default\n{values}\n" for name, values in (("a", "0 1 0 1 0 1 0 1"), ("b", "0 0 1 1 0 0 1 1"))))
+        done = subvol("probe", "two.vtk", "--stats", "-o", "h2.svg", folder=self.folder)
+        self.assertEqual((done.code, "--field NAME" in done.err, (self.folder / "h2.svg").exists()), (2, True, False), done.err)
+        self.assertEqual(len({row["field"] for row in self.table("two.vtk")}), 2)
+
+    def table(self, name):
+        self.run_ok("probe", name, "--stats", "-o", "two.csv")
+        with open(self.folder / "two.csv", newline="") as table:
+            return list(csv.DictReader(table))
+
     def test_the_cells_of_the_file_stand_beside_the_limit(self):
         # Eight cells of a ball: a limit without its corners at the unit sphere has more volume than the cells.
         self.run_ok("model", "ball", "--resolution", 2, "-o", "ball.vtu", "--quiet")
@@ -199,7 +227,7 @@ class Probe(Refusing):
         for words, naming in [([], "--at"), (["--at", "1,2"], "--at"), (["--line", "0,0,0,1,1"], "--line"),
                               (["--points", "bad.csv"], "bad.csv:2"), (["--points", "empty.csv"], "no places"),
                               (["--points", "none.csv"], "none.csv"), (["--at", "0,0,0", "-o", "a.svg"], "--line"),
-                              (["--at", "0,0,0", "-o", "a.txt"], ".csv"), (["--stats", "-o", "a.csv"], "--at"),
+                              (["--at", "0,0,0", "-o", "a.txt"], ".csv"), (["--patch", "top", "-o", "a.csv"], "--at"),
                               (["--line", "5,5,5,6,6,6", "-o", "a.svg"], "outside"), (["--at", "nan,0,0"], "--at")]:
             done = subvol("probe", BOX, *words, folder=self.folder)
             self.assertIn(done.code, (2, 3), words)

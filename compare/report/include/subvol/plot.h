@@ -14,6 +14,7 @@ struct PlotLine {
     std::vector<std::size_t> breaks{};  ///< the points, by their indices, that no line joins with the one before
     std::vector<double> spreads{};      ///< half the lengths of bars through the points, along y; empty: there are none
     std::vector<std::size_t> bounds{};  ///< the points, by their indices, whose values are bounds: they are drawn hollow
+    bool marked = true;                 ///< points are drawn, where they are not many
 };
 
 /// The size of a plot without its legend, and of its letters, in PostScript points. On screens a point is a unit of the view
