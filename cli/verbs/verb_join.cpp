@@ -121,7 +121,7 @@ private:
     }
 
     void join_points(Report& report) {
-        check_output(output_, {".ply", ".vtp", ".svk", ".vdb", ".npz"});
+        check_output(output_, {".ply", ".vtp", ".svk", ".vdb", ".npz", ".glb"});
         const std::optional<std::string> note = read_points_note(parts_.front());
         if (note) {
             PartNote first = note_from(*note, parts_.front());

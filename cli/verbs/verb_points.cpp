@@ -59,12 +59,13 @@ public:
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
                "  subvol points part.vtu -o part.npz                   arrays for numpy\n"
+               "  subvol points part.vtu -o part.glb                   splats for viewers of glTF\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         show_limit_of_parts();
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app()
-            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb, .npz)")
+            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb, .npz, .glb)")
             ->type_name("FILE")
             ->required();
         add_options(app(), options_of(written_));
@@ -97,10 +98,12 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        check_output(output_, {".ply", ".vtp", ".svk", ".vdb", ".npz"});
+        check_output(output_, {".ply", ".vtp", ".svk", ".vdb", ".npz", ".glb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
-        if (extension != ".ply" && (written_.ascii || written_.splats)) {
-            throw Error(ErrorCode::InvalidInput, "only .ply files have it", written_.ascii ? "--ascii" : "--splats");
+        if (extension != ".ply" && (written_.ascii || (written_.splats && extension != ".glb"))) {
+            throw Error(ErrorCode::InvalidInput,
+                        written_.ascii ? "only .ply files have it" : "only .ply and .glb files have it",
+                        written_.ascii ? "--ascii" : "--splats");
         }
         const Share share = share_of(share_);
         tets_ = TetRefinement(refine_);
@@ -121,9 +124,10 @@ public:
             throw Error(ErrorCode::InvalidInput, "the levels of detail of a .svk file are those of all points", output_,
                         ".ply or .vtp; `subvol join` writes .svk");
         }
-        if (share_.given() && extension == ".npz") {
-            throw Error(ErrorCode::InvalidInput, "a share of points is not written as .npz, which is not read again", output_,
-                        ".ply or .vtp; `subvol join` writes .npz");
+        if (share_.given() && (extension == ".npz" || extension == ".glb")) {
+            throw Error(ErrorCode::InvalidInput,
+                        text("a share of points is not written as ", extension, ", which is not read again"), output_,
+                        text(".ply or .vtp; `subvol join` writes ", extension));
         }
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
         if (shares(share_)) {

@@ -750,11 +750,12 @@ def surface(
 def write_points(
     volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: str = 'z'
 ) -> None:
-    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy). Numbers are exact:
-    reading gives the same bits, but of the positions in .vdb. docs/formats.md has the arrays of a .npz.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy), and as
+    .glb the splats that viewers of glTF draw. Numbers are exact: reading gives the same bits, but of the positions in .vdb; .glb is not read.
+    docs/formats.md has the arrays of a .npz.
 
     ascii:       .ply: write text instead of binary numbers
-    splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it
+    splats:      .ply: also for viewers of Gaussian splats; the boundary is then in a file beside it; .glb has splats alone
     up:          with splats: the axis that these viewers show at the top: x, y or z [x, y, z; with splats]
     """
 

@@ -138,13 +138,16 @@ def read_points(path: Path) -> RbfVolume:
 
 @described
 def write_points(volume: RbfVolume, path: Path, **options: Any) -> None:
-    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy). Numbers are exact:
-    reading gives the same bits, but of the positions in .vdb. docs/formats.md has the arrays of a .npz.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail), .vdb (Houdini) or .npz (numpy), and as
+    .glb the splats that viewers of glTF draw. Numbers are exact: reading gives the same bits, but of the positions in .vdb; .glb is not read.
+    docs/formats.md has the arrays of a .npz.
 
     {keywords}
     """
     if extension(path) in (".vdb", ".svk", ".npz") and any(options.values()):
         raise InvalidInput("only .ply files have it", next(key for key, value in options.items() if value))
+    if extension(path) == ".glb" and options.get("ascii"):
+        raise InvalidInput("only .ply files have it", "ascii")
     if extension(path) == ".vdb":
         from . import _grids
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Volumes of kernels."""
 import json
+import struct
 import zipfile
 
 import numpy as np
@@ -177,3 +178,69 @@ def test_arrays_of_kernels_written_by_python(tmp_path, ball_points):
         subvol.read_points(tmp_path / "none.npz")
     with pytest.raises(subvol.InvalidInput, match="only .ply files"):
         subvol.write_points(given, tmp_path / "c.npz", ascii=True)
+
+
+def glb_arrays(path):
+    """The attributes of the only primitive of a .glb file, its JSON, and the world's matrix of its node."""
+    data = path.read_bytes()
+    magic, version, size, length, kind = struct.unpack("<4sIII4s", data[:20])
+    assert (magic, version, size, kind) == (b"glTF", 2, len(data), b"JSON")
+    file, rest = json.loads(data[20:20 + length]), data[20 + length:]
+    assert struct.unpack("<I4s", rest[:8]) == (file["buffers"][0]["byteLength"], b"BIN\0") and len(rest) - 8 == file["buffers"][0]["byteLength"]
+    arrays = {}
+    for name, index in file["meshes"][0]["primitives"][0]["attributes"].items():
+        accessor = file["accessors"][index]
+        view = file["bufferViews"][accessor["bufferView"]]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+        assert accessor["componentType"] == 5126 and view["byteLength"] == 4 * width * accessor["count"]
+        arrays[name.removeprefix("KHR_gaussian_splatting:")] = np.frombuffer(rest[8:], "<f4", width * accessor["count"], view["byteOffset"]).reshape(-1, width)
+        if "min" in accessor:
+            assert np.array_equal(arrays["POSITION"].min(0), np.float32(accessor["min"])) and np.array_equal(arrays["POSITION"].max(0), np.float32(accessor["max"]))
+    return arrays, file
+
+
+def matrices_of(quaternions):
+    x, y, z, w = np.asarray(quaternions, float).T
+    return np.moveaxis(np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                                 [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                                 [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]), -1, 0)
+
+
+def test_splats_of_gltf_are_the_kernels(tmp_path, command):
+    command("points", "model:nozzle:6", "-o", tmp_path / "k.npz")
+    command("points", "model:nozzle:6", "-o", tmp_path / "k.ply", "--splats")
+    kernels, ply = np.load(tmp_path / "k.npz", allow_pickle=False), ply_table(tmp_path / "k.ply")
+    for up, to_y in (None, [[1, 0, 0], [0, 0, 1], [0, -1, 0]]), ("y", np.eye(3)), ("x", [[0, -1, 0], [1, 0, 0], [0, 0, 1]]):
+        command("points", "model:nozzle:6", "-o", tmp_path / "k.glb", *(["--splats", "--up", up] if up else []))
+        splats, file = glb_arrays(tmp_path / "k.glb")
+        primitive, node = file["meshes"][0]["primitives"][0], file["nodes"][0]
+        assert file["extensionsUsed"] == ["KHR_gaussian_splatting"] and primitive["mode"] == 0
+        assert primitive["extensions"]["KHR_gaussian_splatting"] == {"kernel": "ellipse", "colorSpace": "srgb_rec709_display"}
+        turn = matrices_of([node["rotation"]])[0]
+        assert np.allclose(turn, to_y)
+        assert np.allclose(splats["POSITION"] @ turn.T + node["translation"], kernels["centers"] @ np.transpose(to_y), atol=1e-6)
+        # The covariance is the kernel's frame times a number that is the same for all.
+        assert np.allclose(np.linalg.norm(splats["ROTATION"], axis=1), 1, atol=1e-6)
+        spread = matrices_of(splats["ROTATION"]) * splats["SCALE"][:, None, :]
+        covariance = spread @ spread.transpose(0, 2, 1)
+        frames = kernels["frames"].astype(float)[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
+        factor = np.trace(covariance, axis1=1, axis2=2) / np.trace(frames, axis1=1, axis2=2)
+        assert np.ptp(factor) < 1e-5 * factor.mean()
+        assert np.abs(covariance - factor[:, None, None] * frames).max() < 1e-5 * np.abs(covariance).max()
+        # Scale and opacity are those of the .ply without its logarithms; colours are the same.
+        assert np.allclose(splats["SCALE"], np.exp(columns(ply, "scale_0", "scale_1", "scale_2")), rtol=1e-5)
+        assert np.allclose(splats["OPACITY"][:, 0], 1 / (1 + np.exp(-ply["opacity"].astype(float))), atol=1e-6)
+        assert np.array_equal(splats["SH_DEGREE_0_COEF_0"], columns(ply, "f_dc_0", "f_dc_1", "f_dc_2"))
+        screen = np.clip(.5 + .28209479177387814 * splats["SH_DEGREE_0_COEF_0"].astype(float), 0, 1)
+        linear = np.where(screen <= .04045, screen / 12.92, ((screen + .055) / 1.055)**2.4)
+        assert np.allclose(splats["COLOR_0"], linear, atol=1e-6)
+
+
+def test_splats_of_gltf_written_by_python(tmp_path, ball_points):
+    subvol.write_points(ball_points, tmp_path / "a.glb")
+    assert len(glb_arrays(tmp_path / "a.glb")[0]["POSITION"]) == len(ball_points)
+    with pytest.raises(subvol.InvalidInput, match="only .ply"):
+        subvol.write_points(ball_points, tmp_path / "b.glb", ascii=True)
+    with pytest.raises(subvol.InvalidInput):
+        subvol.read_points(tmp_path / "a.glb")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.glb"]

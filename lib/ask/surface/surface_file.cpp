@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "subvol/detail/glb_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"
@@ -199,7 +200,7 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
     }
     const std::size_t count = points.size(), vectors = 12 * count, color_bytes = colors.empty() ? 0 : 4 * count;
     const std::size_t corners = 3 * triangles.size(), total = 2 * vectors + color_bytes + 4 * corners;
-    if (total > 0xF0000000U) {
+    if (total > detail::kMostGlbBytes) {
         throw Error(ErrorCode::InvalidInput, "a .glb file has less than 4 GB", "surface", "a larger tolerance, or .ply");
     }
     using Json = nlohmann::ordered_json;
@@ -236,19 +237,8 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
                     {"accessors", accessors},
                     {"bufferViews", views},
                     {"buffers", Json::array({{{"byteLength", total}}})}};
-    std::string json = file.dump();
-    while (json.size() % 4 != 0) json += ' ';
-
+    out.write(detail::glb_head(file.dump(), total));
     NumberWriter bytes(out);
-    bytes.put(std::uint32_t{0x46546C67});  // "glTF"
-    bytes.put(std::uint32_t{2});
-    bytes.put(static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + total));
-    bytes.put(static_cast<std::uint32_t>(json.size()));
-    bytes.put(std::uint32_t{0x4E4F534A});  // "JSON"
-    bytes.flush();
-    out.write(json);
-    bytes.put(static_cast<std::uint32_t>(total));
-    bytes.put(std::uint32_t{0x004E4942});  // "BIN"
     for (const Vec3& p : points) bytes.put_point<float>(p - center);
     for (const Vec3& n : surface.normals) bytes.put_point<float>(n);
     for (const auto& t : triangles) {

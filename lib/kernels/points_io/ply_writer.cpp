@@ -44,11 +44,8 @@ Mat3 turn_to_viewers(UpAxis up) {
 ///
 /// turn: the rotation of the world into the viewers' space
 std::vector<PlySplat> ply_splats(const RbfVolume& volume, const Mat3& turn) {
-    const std::vector<float>& values = volume.channels.front().values;
     std::vector<PlySplat> splats(volume.size());
-    if (splats.empty()) return splats;
-    const auto [min, max] = std::minmax_element(values.begin(), values.end());
-    const std::vector<SplatGaussian> gaussians = splat_gaussians(volume, transfer_function_preset("viridis", *min, *max), turn);
+    const std::vector<SplatGaussian> gaussians = viewer_gaussians(volume, turn);
     tbb::parallel_for(std::size_t{0}, splats.size(), [&](std::size_t i) {
         const SplatGaussian& gaussian = gaussians[i];
         PlySplat& splat = splats[i];

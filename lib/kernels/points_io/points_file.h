@@ -30,6 +30,7 @@ inline constexpr std::array<std::size_t, 6> kVtpTensorOrder{0, 3, 5, 1, 4, 2};
 /// The writers and readers of one format each. The caller validates volumes before they are written and after they are read.
 void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options);
 void write_vtp(const std::filesystem::path& path, const RbfVolume& volume, const std::string& note);
+void write_glb(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options);
 void write_npz(const std::filesystem::path& path, const RbfVolume& volume);
 
 /// What comes before a note in a comment of either format, and behind it in .vtp.

@@ -51,15 +51,17 @@ bool is_points_file(const std::filesystem::path& path) {
 }
 
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
-    if (format_of(path) != ".PLY" && format_of(path) != ".VTP" && format_of(path) != ".NPZ") {
+    if (format_of(path) != ".PLY" && format_of(path) != ".VTP" && format_of(path) != ".NPZ" && format_of(path) != ".GLB") {
         throw Error(ErrorCode::InvalidInput, "points cannot be written in this format", path.string(),
-                    format_of(path) == ".SVK" ? "write_kernel_file writes .svk" : ".ply, .vtp or .npz");
+                    format_of(path) == ".SVK" ? "write_kernel_file writes .svk" : ".ply, .vtp, .npz or .glb");
     }
     validate(volume);
     if (format_of(path) == ".PLY") {
         write_ply(path, volume, options);
     } else if (format_of(path) == ".NPZ") {
         write_npz(path, volume);
+    } else if (format_of(path) == ".GLB") {
+        write_glb(path, volume, options);
     } else {
         write_vtp(path, volume, options.note);
     }
@@ -105,12 +107,13 @@ std::optional<std::string> read_points_note(const std::filesystem::path& path) {
 }
 
 std::vector<Option> options_of(PointsWriteOptions& options) {
-    return {Option("ascii", options.ascii).help(".ply: write text instead of binary numbers"),
-            Option("splats", options.splats)
-                .help(".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it"),
-            Option("up", options.up)
-                .help("AXIS", "with --splats: the axis that these viewers show at the top: x, y or z")
-                .only_with("splats")};
+    return {
+        Option("ascii", options.ascii).help(".ply: write text instead of binary numbers"),
+        Option("splats", options.splats)
+            .help(".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it; .glb has splats alone"),
+        Option("up", options.up)
+            .help("AXIS", "with --splats: the axis that these viewers show at the top: x, y or z")
+            .only_with("splats")};
 }
 
 }  // namespace subvol

@@ -52,4 +52,11 @@ std::vector<SplatGaussian> splat_gaussians(const RbfVolume& volume, const Transf
     return gaussians;
 }
 
+std::vector<SplatGaussian> viewer_gaussians(const RbfVolume& volume, const Mat3& turn) {
+    const std::vector<float>& values = volume.channels.front().values;
+    if (values.empty()) return {};
+    const auto [min, max] = std::ranges::minmax(values);
+    return splat_gaussians(volume, transfer_function_preset("viridis", min, max), turn);
+}
+
 }  // namespace subvol::detail

@@ -26,4 +26,7 @@ struct SplatGaussian {
 [[nodiscard]] std::vector<SplatGaussian> splat_gaussians(const RbfVolume& volume, const TransferFunction& function,
                                                          const Mat3& turn = Mat3(1.0));
 
+/// Those of viewers, which have no colour map: by viridis over the range of the first channel.
+[[nodiscard]] std::vector<SplatGaussian> viewer_gaussians(const RbfVolume& volume, const Mat3& turn);
+
 }  // namespace subvol::detail

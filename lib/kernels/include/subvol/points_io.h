@@ -23,8 +23,8 @@ struct PointsWriteOptions {
 
 [[nodiscard]] std::vector<Option> options_of(PointsWriteOptions& options);
 
-/// Writes points with all channels as `.ply`, `.vtp` or `.npz`. Numbers are exact: reading gives the same bits. The kernel is
-/// JSON (`to_json`), in a comment or in a string of the field data.
+/// Writes points with all channels as `.ply`, `.vtp` or `.npz`, or splats as `.glb`. Numbers are exact but in `.glb`: reading
+/// gives the same bits. The kernel is JSON (`to_json`), in a comment or in a string of the field data.
 ///
 /// .ply: the element `vertex` has x y z; for each channel value, gx gy gz, moment and, if it has Hessians, hxx hxy hxz hyy hyz
 ///       hzz (of the second channel value_1 …); the frame sxx sxy sxz syy syz szz. The elements `boundary_vertex` and
@@ -41,6 +41,10 @@ struct PointsWriteOptions {
 /// .npz: numpy's archive, for programs that read it with numpy; `read_points` does not. The arrays are centers (n,3), frames
 ///       (n,6) with xx xy xz yy yz zz, channels (c) with the names in UTF-8, values (c,n), gradients (c,n,3), moments (c,n),
 ///       hessians (c,n,6) if a channel has them, kernel (its JSON), bounds (2,3), boundary_points and boundary_triangles.
+/// .glb: glTF with KHR_gaussian_splatting, for viewers of Gaussian splats, and points in their colours for others;
+/// `read_points`
+///       does not read it. The splats are those of a .ply with splats, as floats; the node turns `up` to y. There is no
+///       boundary.
 ///
 /// throws: Error(InvalidInput) for an unknown extension, and as `validate`; Error(Io)
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options = {});
