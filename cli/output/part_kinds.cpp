@@ -36,7 +36,8 @@ Facts write_kernels(const std::string& path, const RbfVolume& volume, const Poin
 Facts files_of_kernels(const std::string& path, const RbfVolume& volume, const PointsWriteOptions& options) {
     Facts facts;
     facts["output"] = path;
-    const bool inside = path.ends_with(".svk") || path.ends_with(".npz") || path.ends_with(".glb") || (path.ends_with(".ply") && !options.splats);
+    const bool inside = path.ends_with(".svk") || path.ends_with(".npz") || path.ends_with(".glb") ||
+                        (path.ends_with(".ply") && !options.splats);
     if (!inside && !volume.boundary.triangles.empty()) facts["boundary"] = detail::boundary_path(path).string();
     return facts;
 }
