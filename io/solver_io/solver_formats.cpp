@@ -11,6 +11,7 @@ constexpr std::array<MeshFormat, 6> kSolverFormats{{
     {.extensions = {".e", ".exo", ".ex2", ".g"},
      .name = "Exodus II",
      .read = read_exodus_file,
+     .write = write_exodus,
      .times = exodus_times,
      .piece = read_exodus_piece,
      .parts = exodus_parts,

@@ -29,6 +29,12 @@ class Hdf5File;
 [[nodiscard]] MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 
+/// Writes blocks of elements HEX8 with the sets, patches as side sets, and all fields as scalars of one step. Warnings name
+/// scalars that have other names there; creases are counted.
+///
+/// throws: Error(InvalidInput) if there are more nodes or elements than the file can number
+std::vector<std::string> write_exodus(const std::filesystem::path& path, const WrittenMesh& written);
+
 /// Reads a step of CalculiX's results, as text.
 [[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
