@@ -51,8 +51,9 @@ public:
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
-        add_option(app(),
-                   Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .e, .inp, .mesh)"))
+        add_option(
+            app(),
+            Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .e, .foam, .inp, .mesh)"))
             ->required();
         add_option(app(),
                    Option("iso", iso_)

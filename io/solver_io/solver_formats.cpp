@@ -23,6 +23,7 @@ constexpr std::array<MeshFormat, 6> kSolverFormats{{
     {.extensions = {".foam", ".openfoam"},
      .name = "OpenFOAM",
      .read = read_foam,
+     .write = write_foam,
      .times = foam_times,
      .parts = foam_parts,
      .part = read_foam_part,

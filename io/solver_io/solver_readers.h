@@ -56,6 +56,13 @@ std::vector<std::string> write_exodus(const std::filesystem::path& path, const W
 [[nodiscard]] MeshFile read_foam_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
 [[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
 
+/// Writes a case of OpenFOAM beside its file: constant/polyMesh with the patches and the sets as zones, fields in the folder 0
+/// and system/controlDict, unless these folders are there. Warnings name patches, sets and fields that have other names there,
+/// or are left out; creases are counted.
+///
+/// throws: Error(InvalidInput) as `build_topology`, and if there is a mesh already
+std::vector<std::string> write_foam(const std::filesystem::path& path, const WrittenMesh& written);
+
 /// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
 [[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes for solvers: what Gmsh, meshio, CalculiX, netCDF and VTK read of the files, and patches and sets that are given."""
+"""Meshes for solvers: what Gmsh, meshio, CalculiX, netCDF, OpenFOAM and VTK read of the files, and patches and sets that are given."""
 import os
 import shutil
 import subprocess
@@ -163,7 +163,75 @@ def test_vtk_reads_exodus(tmp_path):
     assert np.array_equal(nodes[:, 0], mesh.points[mesh.node_sets["middle"]].astype(np.float32))
 
 
-@pytest.mark.parametrize("ending", ["e", "inp", "msh"])
+def write_case(folder):
+    """The bar as a case of OpenFOAM; returns it, too."""
+    mesh = with_all_kinds(folder)
+    with pytest.warns(UserWarning, match='"the "rest"" is called "the__rest_"'):
+        subvol.write_mesh(mesh, folder / "a.foam")
+    return mesh
+
+
+SCHEMES = "default none; } gradSchemes { default Gauss linear; } divSchemes { } laplacianSchemes { } interpolationSchemes { } snGradSchemes { default corrected; }"
+
+
+def test_openfoam_checks_what_is_written(tmp_path):
+    program = shutil.which("checkMesh")
+    if program is None:
+        pytest.skip("Debian's openfoam is not installed")
+    write_case(tmp_path)
+    for name, text in (("fvSchemes", f"ddtSchemes {{ {SCHEMES}"), ("fvSolution", "")):
+        (tmp_path / "system" / name).write_text(f"FoamFile {{ version 2.0; format ascii; class dictionary; object {name}; }}\n{text}\n")
+    run = subprocess.run([program, "-allTopology", "-allGeometry"], cwd=tmp_path, capture_output=True, text=True,
+                         env={**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam"})
+    words = [line.split() for line in run.stdout.splitlines()]
+    assert ["Mesh", "OK."] in words and "Upper triangular ordering OK." in run.stdout, run.stdout + run.stderr
+    for expected in (["points:", "45"], ["internal", "faces:", "28"], ["hexahedra:", "16"]):
+        assert expected in words, run.stdout
+    found = {line[0]: int(line[1]) for line in words if len(line) > 4 and line[1].isdigit()}
+    assert [found[name] for name in ("fixed", "pulled", "defaultFaces", "odd_ones", "the__rest_", "both")] == [4, 4, 32, 3, 2, 2]
+    assert "Total volume = 16." in run.stdout
+
+
+def test_vtk_reads_openfoam(tmp_path):
+    files = pytest.importorskip("vtkmodules.vtkIOGeometry", reason="Debian's python3-vtk9 is not installed")
+    support = pytest.importorskip("vtkmodules.util.numpy_support")
+    mesh = write_case(tmp_path)
+    reader = files.vtkOpenFOAMReader()
+    reader.SetFileName(str(tmp_path / "a.foam"))
+    reader.CreateCellToPointOff()
+    reader.ReadZonesOn()
+    reader.UpdateInformation()
+    reader.EnableAllPatchArrays()
+    reader.EnableAllCellArrays()
+    reader.EnableAllPointArrays()
+    reader.Update()
+
+    def parts_of(group):
+        return {group.GetMetaData(k).Get(group.NAME()): group.GetBlock(k) for k in range(group.GetNumberOfBlocks())}
+
+    parts = parts_of(reader.GetOutput())
+    inside = parts["internalMesh"]
+    points = mesh.points.astype(np.float32)
+    assert np.array_equal(support.vtk_to_numpy(inside.GetPoints().GetData()), points)
+    cells = support.vtk_to_numpy(inside.GetCells().GetConnectivityArray()).reshape(-1, 8)
+    assert np.array_equal(np.sort(cells), np.sort(mesh.cells))
+    assert np.array_equal(support.vtk_to_numpy(inside.GetCellData().GetArray("material")), MATERIAL.astype(np.float32))
+    for name in ("T", "U"):
+        assert np.array_equal(support.vtk_to_numpy(inside.GetPointData().GetArray(name)), mesh.fields[name].astype(np.float32))
+    patches = parts_of(parts["boundary"])
+    for name, x in (("fixed", 0), ("pulled", 4)):
+        quads = support.vtk_to_numpy(patches[name].GetPolys().GetConnectivityArray()).reshape(-1, 4)
+        corners = support.vtk_to_numpy(patches[name].GetPoints().GetData())[quads]
+        assert len(quads) == 4 and (corners[..., 0] == x).all()
+        assert (np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])[:, 0] == (1 if x else -1)).all()  # outwards
+    assert patches["defaultFaces"].GetNumberOfCells() == 32
+    zones = parts_of(parts_of(parts["zones"])["cellZones"])
+    for name, numbers in (("odd_ones", [1, 3, 8]), ("the__rest_", [0, 2]), ("both", [2, 3])):
+        theirs = support.vtk_to_numpy(zones[name].GetCells().GetConnectivityArray()).reshape(-1, 8)
+        assert np.array_equal(np.sort(theirs), np.sort(mesh.cells[numbers]))
+
+
+@pytest.mark.parametrize("ending", ["e", "foam", "inp", "msh"])
 def test_a_full_disk_and_a_missing_folder_leave_no_file(tmp_path, ending):
     subvol.write_mesh(with_all_kinds(tmp_path), tmp_path / "bar.vtu")
     program = [os.environ["SUBVOL_COMMAND"], "subdivide", "bar.vtu", "--levels", "1", "--scheme", "linear", "-o"]
@@ -209,10 +277,12 @@ def test_calculix_computes_with_what_is_written(tmp_path):
     assert np.abs(stress[:, 0] - 100).max() < 1e-2 and np.abs(stress[:, 1:]).max() < 1e-3
 
 
-@pytest.mark.parametrize("ending", ["e", "inp", "msh"])
+@pytest.mark.parametrize("ending", ["e", "foam", "inp", "msh"])
 def test_the_command_writes_them(command, tmp_path, ending):
     subvol.write_mesh(bar(), tmp_path / "bar.vtu")
     command("subdivide", tmp_path / "bar.vtu", "-o", tmp_path / f"fine.{ending}", "--levels", 1, "--scheme", "linear")
     fine = subvol.read_mesh(tmp_path / f"fine.{ending}")
     assert len(fine.cells) == 128 and len(fine.patches["pulled"]) == 16 and len(fine.sets["first"]) == 32
+    if ending == "foam":  # points of zones are not read
+        return
     assert (fine.points[fine.node_sets["middle"], 1] > 0).all()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes Exodus II as a file of netCDF's classic format. Each element is in one block, and blocks follow each other, so cells
-// are sorted: sets that have no cell in common with those before become blocks, the others sets of elements.
+// are sorted: sets that have no cell in common with those before become blocks, the others sets of elements. What the file has
+// is named first, with functions that give the values, and then written at once.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -17,7 +18,6 @@
 #include "subvol/detail/mesh_subset.h"
 #include "subvol/detail/output_file.h"
 #include "subvol/error.h"
-#include "subvol/quantity.h"
 
 namespace subvol::detail {
 namespace {
@@ -39,6 +39,18 @@ std::int32_t exodus_side(std::size_t side) {
         return std::is_permutation(corners.begin(), corners.end(), kCellFaces[side].begin());
     };
     return exodus_number(static_cast<std::size_t>(std::ranges::find_if(sides, same) - sides.begin()));
+}
+
+// What programs know as components of vectors and tensors, in the order of channels; numbers for other fields.
+std::vector<std::string> endings_of(int channels) {
+    if (channels == 2) return {"_x", "_y"};
+    if (channels == 3) return {"_x", "_y", "_z"};
+    if (channels == 6) return {"_xx", "_yy", "_zz", "_xy", "_yz", "_xz"};
+    if (channels == 9) return {"_xx", "_xy", "_xz", "_yx", "_yy", "_yz", "_zx", "_zy", "_zz"};
+    if (channels == 1) return {""};
+    std::vector<std::string> endings;
+    for (int c = 1; c <= channels; ++c) endings.push_back("_" + std::to_string(c));
+    return endings;
 }
 
 /// A scalar of the file: a component of a field.
@@ -120,17 +132,14 @@ private:
         std::set<std::string> at_points, at_cells;
         for (const Attribute& field : mesh_.attributes) {
             const bool of_cells = is_at_cells(mesh_, field);
-            std::vector<std::string> names{field.name};
-            if (field.channels > 1) {
-                names = component_names(field.channels);
-                for (std::string& name : names) name.insert(0, field.name + "_");
-            }
-            for (std::size_t k = 0; k < names.size(); ++k) {
-                std::string name = names[k];
+            const std::vector<std::string> endings = endings_of(field.channels);
+            for (std::size_t k = 0; k < endings.size(); ++k) {
+                const std::string wanted = field.name + endings[k];
+                std::string name = wanted;
                 while (!(of_cells ? at_cells : at_points).insert(name).second) name += '_';
-                if (name != names[k]) warnings_.push_back(in_quotes(names[k]) + " is called " + in_quotes(name));
+                if (name != wanted) warnings_.push_back(in_quotes(wanted) + " is called " + in_quotes(name));
                 (of_cells ? of_elements_ : of_nodes_)
-                    .push_back({name, of_cells ? &field.cells : &field.values, k, static_cast<std::size_t>(field.channels)});
+                    .push_back({name, of_cells ? &field.cells : &field.values, k, endings.size()});
             }
         }
     }

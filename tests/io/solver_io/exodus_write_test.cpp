@@ -139,7 +139,7 @@ TEST_F(ExodusWrite, NamesMayBeLongAndAreDifferent) {
     EXPECT_EQ(read.sets.patches.at(0).name, name);
     EXPECT_EQ(read.sets.sets.at(0).name, name + "s");
     for (const auto& [scalar, value] :
-         std::map<std::string, double>{{name, 1}, {"U_x", 2}, {"U_x_", 3}, {"U_y", 3}, {"odd_3", 4}}) {
+         std::map<std::string, double>{{name, 1}, {"U_x", 2}, {"U_x_", 3}, {"U_y", 3}, {"odd_4", 4}}) {
         ASSERT_NE(read.mesh.find_attribute(scalar), nullptr) << scalar;
         EXPECT_EQ(read.mesh.find_attribute(scalar)->values, std::vector<double>(8, value)) << scalar;
     }
