@@ -145,8 +145,12 @@ TEST_F(MeshIo, ListedExtensionsAreThoseThatAreReadAndWritten) {
         const auto folder = path(extension.substr(1));  // an OpenFOAM case has one of its own
         std::filesystem::create_directory(folder);
         write_mesh(folder / ("a" + extension), kBox);
-        EXPECT_EQ(read_mesh(folder / ("a" + extension)).mesh.points, kBox.points);
-        EXPECT_EQ(read_mesh(folder / ("a" + extension)).mesh.cells.size(), kBox.cells.size());
+        const HexMesh read = read_mesh(folder / ("a" + extension)).mesh;
+        EXPECT_EQ(read.points, kBox.points);
+        EXPECT_EQ(read.cells.size(), kBox.cells.size());
+        if (!extension.ends_with("foam")) {  // where cells are faces their corners may turn
+            EXPECT_EQ(read.cells, kBox.cells);
+        }
     }
     EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".xdmf"));
     for (const char* extension : {".mesh", ".vtu", ".msh", ".vtkhdf", ".hdf"})
