@@ -58,10 +58,10 @@ public:
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         CLI::Option* mend = add_option(app(), Option("mend", mend_).help("move control points until the limit does not fold"));
-        mend->needs(
-            add_option(app(),
-                       Option("output", output_).also("o").help("FILE", "the mended mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))
-                ->needs(mend));
+        mend->needs(add_option(app(), Option("output", output_)
+                                          .also("o")
+                                          .help("FILE", "the mended mesh (.vtu, .vtkhdf, .msh, .e, .foam, .inp, .mesh)"))
+                        ->needs(mend));
         add_options(app(), options_of(mending_));
         for (const char* name : {"--boundary-move", "--rounds"}) app().get_option(name)->needs(mend);
         CLI::Option* series = add_option(

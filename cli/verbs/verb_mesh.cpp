@@ -51,8 +51,9 @@ public:
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
-        add_option(app(),
-                   Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .inp, .mesh)"))
+        add_option(
+            app(),
+            Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .e, .foam, .inp, .mesh)"))
             ->required();
         add_option(app(),
                    Option("iso", iso_)
@@ -135,7 +136,8 @@ private:
                              " become round, as no edges of the mesh can follow them: more --cells or --refine may"));
         }
         const std::string ending = std::filesystem::path(output_).extension().string();
-        if ((ending == ".inp" || ending == ".msh") && !interpolates(scheme_.options(0, nullptr).scheme.kind)) {
+        const bool for_us = ending == ".vtu" || ending == ".vtkhdf" || ending == ".hdf" || ending == ".mesh";
+        if (!for_us && !interpolates(scheme_.options(0, nullptr).scheme.kind)) {
             report.warn(text("the points of ", output_,
                              " are not on the limit of the scheme, and solvers take straight cells "
                              "between them: those of --scheme mcq are on it"));

@@ -23,9 +23,11 @@ public:
                "  subvol model twist --resolution 40 -o twist.vtu",
                Reads::NoMesh) {
         add_input(app(), "NAME", name_, "the model's name");
-        add_option(app(), Option("output", output_)
-                              .also("o")
-                              .help("FILE", "the mesh to write (.vtu, .vtkhdf or .msh with its field, .inp or .mesh without)"));
+        add_option(
+            app(),
+            Option("output", output_)
+                .also("o")
+                .help("FILE", "the mesh to write (.vtu, .vtkhdf, .msh, .e or .foam with its field, .inp or .mesh without)"));
         add_option(app(), Option("resolution", resolution_).between(2, 512).help("N", "cells along the main direction"));
         add_option(app(), Option("list", list_).help("list the models"));
     }

@@ -28,9 +28,11 @@ public:
                "  subvol subdivide model:ball -o fine.vtu --levels 2\n"
                "  subvol subdivide part.mesh -o fine.vtu --density \"exp(-(x^2+y^2+z^2))\"") {
         add_input(app(), "FILE", input_, input_help())->required();
-        add_option(app(), Option("output", output_)
-                              .also("o")
-                              .help("FILE", "the mesh to write (.vtu, .vtkhdf or .msh with its fields, .inp or .mesh without)"))
+        add_option(
+            app(),
+            Option("output", output_)
+                .also("o")
+                .help("FILE", "the mesh to write (.vtu, .vtkhdf, .msh, .e or .foam with its fields, .inp or .mesh without)"))
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
         add_option(

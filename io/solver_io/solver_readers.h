@@ -29,6 +29,12 @@ class Hdf5File;
 [[nodiscard]] MeshFile read_exodus_piece(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> exodus_times(const std::filesystem::path& path);
 
+/// Writes blocks of elements HEX8 with the sets, patches as side sets, and all fields as scalars of one step. Warnings name
+/// scalars that have other names there; creases are counted.
+///
+/// throws: Error(InvalidInput) if there are more nodes or elements than the file can number
+std::vector<std::string> write_exodus(const std::filesystem::path& path, const WrittenMesh& written);
+
 /// Reads a step of CalculiX's results, as text.
 [[nodiscard]] ReadResult read_frd(std::string_view text, std::string_view file, const ReadOptions& options);
 [[nodiscard]] std::vector<double> frd_times(const std::filesystem::path& path);
@@ -49,6 +55,13 @@ class Hdf5File;
 [[nodiscard]] std::size_t foam_parts(const std::filesystem::path& path);
 [[nodiscard]] MeshFile read_foam_part(const std::filesystem::path& path, std::size_t part, const ReadOptions& options);
 [[nodiscard]] std::vector<double> foam_times(const std::filesystem::path& path);
+
+/// Writes a case of OpenFOAM beside its file: constant/polyMesh with the patches and the sets as zones, fields in the folder 0
+/// and system/controlDict, unless these folders are there. Warnings name patches, sets and fields that have other names there,
+/// or are left out; creases are counted.
+///
+/// throws: Error(InvalidInput) as `build_topology`, and if there is a mesh already
+std::vector<std::string> write_foam(const std::filesystem::path& path, const WrittenMesh& written);
 
 /// Reads an Abaqus or CalculiX deck: nodes, elements of volumes, parts, instances, and sets of elements as blocks.
 [[nodiscard]] ReadResult read_inp(const std::filesystem::path& path, const ReadOptions& options);

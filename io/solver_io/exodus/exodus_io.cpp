@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "assemble.h"
+#include "exodus_sides.h"
 #include "join_pieces.h"
 #include "mesh_file.h"
 #include "polyhedra.h"
@@ -190,21 +191,6 @@ struct Block {
 };
 
 constexpr const char* kNfaced = "NFACED";
-
-// The nodes of the sides of each shape, as Exodus numbers them.
-using CornersOfSides = std::vector<std::vector<std::size_t>>;
-const CornersOfSides kExodusHexSides{{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-const CornersOfSides kExodusTetSides{{0, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 2, 1}};
-const CornersOfSides kExodusWedgeSides{{0, 1, 4, 3}, {1, 2, 5, 4}, {0, 3, 5, 2}, {0, 2, 1}, {3, 4, 5}};
-const CornersOfSides kExodusPyramidSides{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {0, 4, 3}, {0, 3, 2, 1}};
-
-const CornersOfSides& exodus_sides(std::string_view type) {
-    static const CornersOfSides none;
-    if (type.starts_with("HEX")) return kExodusHexSides;
-    if (type.starts_with("TET")) return kExodusTetSides;
-    if (type.starts_with("WEDGE")) return kExodusWedgeSides;
-    return type.starts_with("PYR") ? kExodusPyramidSides : none;
-}
 
 struct Variable {
     std::string name;

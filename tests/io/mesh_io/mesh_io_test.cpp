@@ -141,9 +141,16 @@ TEST_F(MeshIo, ListedExtensionsAreThoseThatAreReadAndWritten) {
         EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("cannot be read: No such file"));
     }
     for (const std::string& extension : writable_mesh_extensions()) {
-        if (extension.ends_with("hdf")) continue;  // not in every build
-        write_mesh(path("a" + extension), kBox);
-        EXPECT_EQ(read_mesh(path("a" + extension)).mesh.cells, kBox.cells);
+        if (extension.ends_with("hdf")) continue;       // not in every build
+        const auto folder = path(extension.substr(1));  // an OpenFOAM case has one of its own
+        std::filesystem::create_directory(folder);
+        write_mesh(folder / ("a" + extension), kBox);
+        const HexMesh read = read_mesh(folder / ("a" + extension)).mesh;
+        EXPECT_EQ(read.points, kBox.points);
+        EXPECT_EQ(read.cells.size(), kBox.cells.size());
+        if (!extension.ends_with("foam")) {  // where cells are faces their corners may turn
+            EXPECT_EQ(read.cells, kBox.cells);
+        }
     }
     EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".xdmf"));
     for (const char* extension : {".mesh", ".vtu", ".msh", ".vtkhdf", ".hdf"})
