@@ -259,9 +259,9 @@ private:
                                    " cells is open (more --levels or --tests decide more)"));
         }
         if (all.irregular > 0) {
-            line("irregular", text(counted(all.irregular, "cell"), " near irregular edges, of which the volume of ",
-                                   all.irregular_volume, " cells is open",
-                                   scheme == Scheme::Mcq ? "; only limits of cc and bsxw are decided there" : ""));
+            line("irregular",
+                 text(counted(all.irregular, "cell"), " near irregular edges, of which the volume of ", all.irregular_volume,
+                      " cells is open", scheme == Scheme::Mcq ? "; only limits of cc and bsxw are decided there" : ""));
         }
         if (all.sampled.cells > 0) line("sampled", text(counted(all.sampled.cells, "undecided cell"), ": ", sample_text(all)));
         line("verdict", report["verdict"].get<std::string>());

@@ -18,7 +18,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "subvol/detail/glb_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/output_file.h"
 #include "subvol/detail/printable.h"

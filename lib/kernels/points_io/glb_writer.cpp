@@ -10,7 +10,6 @@
 
 #include "points_file.h"
 #include "splat_gaussians.h"
-#include "subvol/detail/glb_file.h"
 #include "subvol/detail/output_file.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"

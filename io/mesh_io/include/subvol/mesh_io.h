@@ -47,8 +47,10 @@ namespace subvol {
 ///         Error(MissingCapability) for a file of HDF5 if the library is built without HDF5
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes a mesh: MEDIT `.mesh` (geometry only), or VTK XML `.vtu` or VTKHDF `.vtkhdf` (compressed, with all attributes,
-/// patches and sets of cells). The file is written under a temporary name and then renamed, so that it is never incomplete.
+/// Writes a mesh: MEDIT `.mesh` (geometry only), VTK XML `.vtu` or VTKHDF `.vtkhdf` (compressed, with all attributes, patches
+/// and sets), or for solvers Gmsh `.msh`, Abaqus `.inp` (without attributes), Exodus II `.e` or a case of OpenFOAM, `.foam`
+/// with its folders beside it, which are not replaced. Files are written under temporary names and then renamed, so that they
+/// are never incomplete.
 ///
 /// shells:  become quads and lines after the cells; their points that the mesh does not have come after its points. `.vtu` only
 /// sets:    those without sides or cells are not written

@@ -99,4 +99,13 @@ private:
     std::string buffer_;
 };
 
+/// More bytes than fit into a `.glb` file with what describes them.
+inline constexpr std::size_t kMostGlbBytes = 0xF0000000U;
+
+/// What comes before the bytes of a `.glb` file: its head, the chunk of JSON, and the head of the chunk of bytes.
+///
+/// json:  describes one buffer of so many bytes
+/// bytes: a multiple of 4, at most `kMostGlbBytes`
+[[nodiscard]] std::string glb_head(std::string json, std::size_t bytes);
+
 }  // namespace subvol::detail
