@@ -59,7 +59,7 @@ public:
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "  subvol points big.vtu -o big.svk                     with levels of detail\n"
                "  subvol points part.vtu -o part.npz                   arrays for numpy\n"
-               "  subvol points part.vtu -o part.glb                   splats for viewers of glTF\n"
+               "  subvol points part.vtu -o part.glb                   splats for viewers\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         show_limit_of_parts();

@@ -198,7 +198,7 @@ TEST_F(PointsIo, WhatCannotBeWrittenLeavesNothing) {
     std::filesystem::create_directory(path("a.boundary.vtp"));
     EXPECT_THAT(error_of([&] { write_points(path("a.vtp"), volume); }, ErrorCode::Io), HasSubstr("is a folder"));
     EXPECT_EQ(file_count(), 1u);
-    EXPECT_THAT(error_of([&] { write_points(path("a.obj"), volume); }), HasSubstr(".ply, .vtp or .npz"));
+    EXPECT_THAT(error_of([&] { write_points(path("a.obj"), volume); }), HasSubstr(".ply, .vtp, .npz or .glb"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read_points(path("none.ply"))); }, ErrorCode::Io), HasSubstr("none.ply"));
 }
 
