@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "io/field_of_roots.h"
 #include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "subvol/mesh_io.h"
@@ -69,12 +70,7 @@ TEST_F(GmshWrite, FieldsComeBackAtTheirCellsAndPoints) {
     HexMesh box = make_box(2, 1, 1);
     box.time = 2.5;
     const std::size_t points = box.points.size();
-    const auto field = [&](const char* name, int channels) {
-        Attribute made{name, channels, {}};
-        for (std::size_t k = 0; k < points * static_cast<std::size_t>(channels); ++k)
-            made.values.push_back(std::sqrt(static_cast<double>(k) + 0.1));
-        return made;
-    };
+    const auto field = [&](const char* name, int channels) { return field_of_roots(box, name, channels); };
     box.attributes = {field("T", 1), field("U", 3), field("S", 6), field("odd", 2)};
     Attribute material{"material", 1, std::vector<double>(points, 1)};
     material.cells = {7, 4};
