@@ -28,14 +28,18 @@ namespace {
 class MeshVerb : public Verb {
 public:
     explicit MeshVerb(CLI::App& program)
-        : Verb(program, "mesh", "Make a control mesh whose limit fills a closed surface, or a part of a grid.",
+        : Verb(program, "mesh", "Make a control mesh whose limit fills closed surfaces, or a part of a grid.",
                "  subvol mesh part.stl -o part.vtu\n"
                "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
                "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
                "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
+               "  subvol mesh bone.stl skin.stl -o leg.vtu\n"
                "\n"
                "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
-               "united; holes are spanned. The exit code is 1 if the limit folds or control cells are inverted; the mesh is "
+               "united; holes are spanned by the patch lid. Of several files each is a material, whose cells are a set of the "
+               "file's "
+               "name; what several enclose is of the one that encloses least. The exit code is 1 if the limit folds or control "
+               "cells are inverted; the mesh is "
                "written "
                "all the same.\n"
                "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
@@ -47,10 +51,14 @@ public:
                "creases, rms, max: of the creases from the chains}, thin {part, thickness_world, at: of the surface about "
                "parts thinner "
                "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
+               "lid_sides (of cells, over holes), materials (of several "
+               "files: name, cells, volume_world, enclosed_world), "
                "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
                "{walls, "
                "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
-        add_input(app(), "FILE", input_, "a closed surface (.stl, .obj, .ply, .glb), or a .vdb grid of floats")->required();
+        add_input(app(), "FILE", inputs_,
+                  "closed surfaces (.stl, .obj, .ply, .glb), each of a material, or a .vdb grid of floats")
+            ->required();
         add_option(
             app(),
             Option("output", output_).also("o").help("FILE", "the control mesh (.vtu, .vtkhdf, .msh, .e, .foam, .inp, .mesh)"))
@@ -71,30 +79,40 @@ public:
         options.names = OptionNames::Flags;
         options.progress = report.progress();
         report.if_long("fewer --cells");
-        report["input"] = input_;
-        const Surface surface = read(report);
-        report["triangles"] = surface.triangles.size();
-        const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(surface, options); });
-        report.merge(write_reported(output_, made.mesh, report.progress()));
+        if (inputs_.size() == 1) report["input"] = inputs_.front();
+        if (inputs_.size() > 1) report["inputs"] = inputs_;
+        std::vector<MaterialSurface> materials;
+        std::size_t triangles = 0;
+        for (const std::string& input : inputs_) {
+            materials.push_back({std::filesystem::path(input).stem().string(), read(input, report)});
+            triangles += materials.back().surface.triangles.size();
+        }
+        report["triangles"] = triangles;
+        const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(materials, options); });
+        report.merge(write_reported(output_, made.mesh, {}, made.sets, report.progress()));
         put(made, report);
         return made.report.shape.is_sound() ? 0 : 1;
     }
 
 private:
-    [[nodiscard]] Surface read(Report& report) {
-        if (is_vdb_file(input_)) {
-            const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
+    [[nodiscard]] Surface read(const std::string& input, Report& report) {
+        if (is_vdb_file(input)) {
+            if (inputs_.size() > 1) {
+                throw Error(ErrorCode::InvalidInput, "is a grid; materials have surfaces", input,
+                            "an .stl, .obj, .ply or .glb file");
+            }
+            const VdbGrid grid = report.unpack(load_grid(input, common(), report.progress()));
             return report.timed("surface", [&] { return vdb().grid_surface(grid, iso_); });
         }
-        if (!is_surface_file(input_)) {
-            if (!is_model(input_)) detail::refuse_missing(input_);
-            if (detail::names_foreign_surface(input_)) detail::refuse_surface(input_);
-            throw Error(ErrorCode::InvalidInput, "is not a surface", input_,
+        if (!is_surface_file(input)) {
+            if (!is_model(input)) detail::refuse_missing(input);
+            if (detail::names_foreign_surface(input)) detail::refuse_surface(input);
+            throw Error(ErrorCode::InvalidInput, "is not a surface", input,
                         "an .stl, .obj, .ply or .glb file of triangles, or a .vdb grid");
         }
         refuse_mesh_options(app(), "needs a grid; this is a surface");
         refuse_options(app(), {"--field", "--iso"}, "needs a grid; this is a surface");
-        return report.timed("read", [&] { return read_surface(input_); });
+        return report.timed("read", [&] { return read_surface(input); });
     }
 
     void put(const ControlMesh& made, Report& report) const {
@@ -114,11 +132,17 @@ private:
         if (error.hole_part > 0) {
             report.say(text("holes         under ", text(std::setprecision(2), 100 * error.hole_part),
                             " % of the boundary's area; the rest ", error.covered_rms, " RMS from the surface, at most ",
-                            error.covered_max));
+                            error.covered_max,
+                            found.lid_sides > 0 ? text("; patch lid: ", counted(found.lid_sides, "side")) : ""));
         }
         report.say(text("surface       ", error.missed_rms, " RMS from the boundary (", sides(error.missed_rms),
                         " cells), at most ", error.missed_max, " at ", error.missed_at.x, ", ", error.missed_at.y, ", ",
                         error.missed_at.z));
+        for (const MaterialReport& material : found.materials) {
+            report.say(text("material      ", material.name, ": ", counted(material.cells, "cell"), ", volume ",
+                            material.volume_world,
+                            material.enclosed_world ? text("; its surface encloses ", *material.enclosed_world) : ""));
+        }
         if (const SharpEdgeReport& sharp = found.sharp; sharp.curves > 0) {
             report.say(text("sharp edges   ", counted(sharp.curves - sharp.missed, "chain"), " of ", sharp.curves, " as ",
                             counted(sharp.creases, "crease"), ", ", sharp.rms, " RMS from them, at most ", sharp.max));
@@ -146,7 +170,8 @@ private:
         report.all_said();
     }
 
-    std::string input_, output_;
+    std::vector<std::string> inputs_;
+    std::string output_;
     std::optional<double> iso_;
     RefineArguments scheme_;
     ControlMeshOptions options_;

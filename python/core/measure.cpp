@@ -13,7 +13,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bind.h"
 #include "subvol/approximate.h"
@@ -565,16 +568,17 @@ py::tuple fit_shape_of(const HexMesh& mesh, const py::object& points, const py::
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
-py::tuple control_mesh(const py::object& points, const py::object& triangles, const py::object& progress,
+py::tuple control_mesh(const std::vector<std::tuple<std::string, py::object, py::object>>& surfaces, const py::object& progress,
                        const py::kwargs& keywords) {
     ControlMeshOptions options;
     set_options(keywords_of(options), keywords);
-    const Surface surface = surface_of(points, triangles);
+    std::vector<MaterialSurface> materials;
+    for (const auto& [name, points, triangles] : surfaces) materials.push_back({name, surface_of(points, triangles)});
     ControlMesh made = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
-        return control_mesh_of(surface, options);
+        return control_mesh_of(materials, options);
     });
-    return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
+    return py::make_tuple(with_sets(std::move(made.mesh), std::move(made.sets)), dict_of(facts_of(made.report)));
 }
 
 py::tuple read_triangles(const std::string& path) {
@@ -596,7 +600,7 @@ void bind_measure(py::module_& module) {
     describe(module, "approximate_series", series_keywords_of(of_series));
     module.def("fit_shape", &fit_shape_of, py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("progress"));
     describe_call<FitShapeOptions>(module, "fit_shape");
-    module.def("control_mesh", &control_mesh, py::arg("points"), py::arg("triangles"), py::arg("progress"));
+    module.def("control_mesh", &control_mesh, py::arg("surfaces"), py::arg("progress"));
     describe_call<ControlMeshOptions>(module, "control_mesh");
     module.def("read_surface", &read_triangles, py::arg("path"));
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));

@@ -113,15 +113,19 @@ def check_folds_between(
     """
 
 def control_mesh(
-    points: npt.ArrayLike, triangles: npt.ArrayLike, *, scheme: str = 'mcq', tension: float = 0.0625,
+    points: Union[npt.ArrayLike, Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]],
+    triangles: Optional[npt.ArrayLike] = None, *, scheme: str = 'mcq', tension: float = 0.0625,
     crease_angle: Optional[Union[float, str]] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
     refine: int = 0, tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False,
     boundary_move: float = 0.2, progress: Progress = None
 ) -> tuple[HexMesh, ControlMeshReport]:
-    """A mesh of hexahedra whose limit fills a closed surface of triangles.
+    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials with a surface each.
 
-    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
-    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world, min_scaled_jacobian, and surface:
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside. Of several materials
+    `points` alone, by name: `{"bone": (points, triangles), "skin": read_surface("skin.stl")}`. A place in more than one has the
+    material of the surface that encloses least; `mesh.sets` has the cells of each.
+    Returns the mesh, whose patch `lid` has the sides over holes, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world,
+    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, and surface:
     walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
     sheets and turned triangles, one_sided and many_edges.
 

@@ -202,19 +202,30 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
 
 
 @described
-def control_mesh(points: npt.ArrayLike, triangles: npt.ArrayLike, *, progress: Progress = None,
-                 **options: Any) -> tuple[HexMesh, ControlMeshReport]:
-    """A mesh of hexahedra whose limit fills a closed surface of triangles.
+def control_mesh(points: Union[npt.ArrayLike, Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]], triangles: Optional[npt.ArrayLike] = None, *,
+                 progress: Progress = None, **options: Any) -> tuple[HexMesh, ControlMeshReport]:
+    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials with a surface each.
 
-    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside.
-    Returns the mesh, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world, min_scaled_jacobian, and surface:
+    points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside. Of several materials
+    `points` alone, by name: `{"bone": (points, triangles), "skin": read_surface("skin.stl")}`. A place in more than one has the
+    material of the surface that encloses least; `mesh.sets` has the cells of each.
+    Returns the mesh, whose patch `lid` has the sides over holes, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world,
+    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, and surface:
     walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
     sheets and turned triangles, one_sided and many_edges.
 
     {keywords}
     """
+    if isinstance(points, Mapping):
+        if triangles is not None:
+            raise InvalidInput("triangles: have no effect beside surfaces by name", "triangles", "none")
+        surfaces = [(name, *surface) for name, surface in points.items()]
+    elif triangles is None:
+        raise InvalidInput("triangles: there are none", "triangles", "(m,3) corners, or surfaces by name for points")
+    else:
+        surfaces = [("", points, triangles)]
     with listening(progress) as listener:
-        mesh, report = _core.control_mesh(points, triangles, listener, **options)
+        mesh, report = _core.control_mesh(surfaces, listener, **options)
         return mesh, report
 
 

@@ -257,8 +257,21 @@ class ThinParts(TypedDict):
     at: list[float]
 
 
+class _EnclosedMaterial(TypedDict, total=False):
+    enclosed_world: float  # by its surface, without the materials within; if it has no holes and crosses none that encloses less
+
+
+class Material(_EnclosedMaterial):
+    """A material of a mesh by `control_mesh`; volume_world: that its limit fills."""
+
+    name: str
+    cells: int
+    volume_world: float
+
+
 class _Enclosed(TypedDict, total=False):
     enclosed_world: float  # if the surface has no holes and no parts cross
+    materials: list[Material]  # if there are several
     thin: ThinParts  # if the mesh is not as it should be
 
 
@@ -270,6 +283,7 @@ class ControlMeshReport(ShapeReport, _Enclosed):
     refined: int
     divided: int
     side_world: float
+    lid_sides: int
     sharp: SharpCurves
     min_scaled_jacobian: float
     surface: SurfaceBodies

@@ -43,6 +43,33 @@ class Mesh(InFolder):
             # The rounded corners of the cube, .5 √3 from its middle; control points of cc are beyond what their limit meets.
             self.assertEqual(max(corners) > 1.01, off, (scheme, max(corners)))
 
+    def test_of_several_surfaces_each_is_a_material(self):
+        (self.folder / "lower.obj").write_text(cube(0))
+        upper = "".join(line if line[0] == "f" else f"v {' '.join(line.split()[1:3])} {float(line.split()[3]) + 1}\n" for line in cube(0).splitlines(True))
+        (self.folder / "upper.obj").write_text(upper)
+        found = self.make("lower.obj", "upper.obj", "-o", "two.vtu", "--cells", "8", "--quiet")
+        self.assertEqual([material["name"] for material in found["materials"]], ["lower", "upper"])
+        self.assertEqual(sum(material["cells"] for material in found["materials"]), found["cells"])
+        for material in found["materials"]:
+            self.assertLess(abs(material["volume_world"] - 1), .01)
+            self.assertLess(abs(material["enclosed_world"] - 1), 1e-9)
+        stats = self.run_ok("probe", "two.vtu", "--only", "set:upper", "--density", "1", "--stats", "--json").json()["stats"]["whole"]
+        self.assertLess(abs(stats["volume"] - 1), .01)
+        deck = self.run_ok("mesh", "lower.obj", "upper.obj", "-o", "two.inp", "--cells", "8", "--quiet") and (self.folder / "two.inp").read_text()
+        self.assertIn("*ELSET, ELSET=lower", deck)
+        self.assertIn("*ELSET, ELSET=upper", deck)
+        twice = subvol("mesh", "lower.obj", "lower.obj", "-o", "no.vtu", folder=self.folder)
+        self.assertEqual(twice.code, 2)
+        self.assertIn("lower: two materials have this name", twice.err)
+        self.assertFalse((self.folder / "no.vtu").exists())
+
+    def test_sides_over_holes_are_the_patch_lid(self):
+        (self.folder / "open.obj").write_text(cube(0, faces=5))
+        found = self.make("open.obj", "-o", "open.vtu", "--cells", "6", "--quiet")
+        self.assertGreater(found["lid_sides"], 9)
+        info = self.run_ok("info", "open.vtu", "--json").json()
+        self.assertIn("lid", str(info["patches"]))
+
     def test_cells_are_divided_where_the_surface_asks_for_it(self):
         # a ball with ripples on one side, too short for large cells
         self.run_ok("surface", "model:ball:4", "--boundary", "-o", "ball.obj", "--tolerance", "1e-3", "--quiet")

@@ -207,6 +207,25 @@ def test_surfaces_become_meshes(tmp_path):
         subvol.control_mesh(points, triangles, cells=1)
 
 
+def test_several_surfaces_are_materials_of_one_mesh():
+    outer, inner = (subvol.surface(subvol.model("ball", 4), tolerance=5e-3) for _ in range(2))
+    middle = outer.points.mean(axis=0)
+    surfaces = {"shell": (outer.points, outer.triangles), "core": (middle + .5 * (inner.points - middle), inner.triangles)}
+    mesh, report = subvol.control_mesh(surfaces, cells=8)
+    assert list(mesh.sets) == ["shell", "core"]
+    assert sorted(np.concatenate(list(mesh.sets.values()))) == list(range(len(mesh.cells)))
+    shell, core = report["materials"]
+    corners = outer.points[outer.triangles]
+    volume = abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()) / 6
+    assert shell["enclosed_world"] == pytest.approx(volume * 7 / 8, rel=1e-9)
+    assert shell["volume_world"] == pytest.approx(volume * 7 / 8, rel=.02)
+    assert core["volume_world"] == pytest.approx(volume / 8, rel=.03)
+    with pytest.raises(subvol.InvalidInput, match="triangles: there are none"):
+        subvol.control_mesh(outer.points)
+    with pytest.raises(subvol.InvalidInput, match="triangles: have no effect beside surfaces by name"):
+        subvol.control_mesh(surfaces, outer.triangles)
+
+
 def test_folds_are_mended():
     twist = subvol.model("twist", 6)
     points = twist.points.copy()

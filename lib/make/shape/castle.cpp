@@ -13,16 +13,18 @@ namespace {
 /// Chosen cells and those around them.
 class Castle {
 public:
-    Castle(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen)
+    Castle(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen,
+           std::span<const std::uint8_t> fixed)
         : topology_(build_topology(mesh)),
           likeness_(likeness),
           chosen_(chosen),
-          at_hull_(chosen.size(), 0),
+          fixed_(fixed.begin(), fixed.end()),
           cells_at_(mesh.points.size()) {
+        fixed_.resize(chosen.size(), 0);
         for (Index c = 0; c < chosen.size(); ++c) {
             for (const Index p : mesh.cells[c]) {
                 cells_at_[p].push_back(c);
-                if (topology_.point_on_boundary[p] != 0) at_hull_[c] = 1;
+                if (topology_.point_on_boundary[p] != 0) fixed_[c] = 1;
             }
         }
     }
@@ -75,7 +77,7 @@ private:
     Index added_among(std::span<const Index> cells) {
         Index best = kNone;
         for (const Index c : cells) {
-            if (chosen_[c] != 0 || at_hull_[c] != 0) continue;
+            if (chosen_[c] != 0 || fixed_[c] != 0) continue;
             if (best == kNone || likeness_[c] > likeness_[best]) best = c;
         }
         if (best != kNone) chosen_[best] = 1;
@@ -85,14 +87,15 @@ private:
     Topology topology_;
     const std::vector<float>& likeness_;
     std::vector<std::uint8_t>& chosen_;
-    std::vector<std::uint8_t> at_hull_;
+    std::vector<std::uint8_t> fixed_;
     std::vector<std::vector<Index>> cells_at_;
 };
 
 }  // namespace
 
-std::size_t make_manifold(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen) {
-    Castle castle(mesh, likeness, chosen);
+std::size_t make_manifold(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen,
+                          std::span<const std::uint8_t> fixed) {
+    Castle castle(mesh, likeness, chosen, fixed);
     std::vector<Index> left;
     for (auto p = static_cast<Index>(castle.points()); p-- > 0;) {
         if (castle.mixed(p)) left.push_back(p);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
@@ -13,7 +14,9 @@ namespace subvol::detail {
 ///
 /// chosen:   a flag for each cell
 /// likeness: a number for each cell
+/// fixed:    a flag for each cell that is never added; none: all may be
 /// returns:  how many were added
-std::size_t make_manifold(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen);
+std::size_t make_manifold(const HexMesh& mesh, const std::vector<float>& likeness, std::vector<std::uint8_t>& chosen,
+                          std::span<const std::uint8_t> fixed = {});
 
 }  // namespace subvol::detail

@@ -15,6 +15,7 @@ namespace subvol::detail {
 struct SizedMesh {
     HexMesh mesh;
     std::vector<double> sides;
+    std::vector<Index> materials = {};  ///< of each cell; none if there is one alone
 };
 
 [[nodiscard]] Vec3 middle_of(const HexMesh& mesh, Index cell);

@@ -61,61 +61,122 @@ void note_folds(const FoldCheck& check, FitShapeReport& report) {
                               (sampled > 0 ? " (" + std::to_string(sampled) + " found to fold by sampling)" : ""));
 }
 
-/// The boundary of the limit by its vertices of level 2. Of the cells only those at the boundary are refined, where that gives
-/// points of the limit.
-Surface fine_boundary(const HexMesh& mesh, const SchemeOptions& scheme) {
+/// The walls of a material in the limit, by vertices of level 2: all of them, and those that are drawn to its own surface.
+struct FineWalls {
+    Surface closed, own;
+    std::vector<CellSide> sides;  // of the control mesh, for each two triangles of `own`
+};
+
+/// The walls of each material. Of the cells only those at walls are refined, where that gives points of the limit.
+std::vector<FineWalls> fine_walls(const HexMesh& mesh, std::span<const Index> materials, const SchemeOptions& scheme) {
     const Topology topology = build_topology(mesh);
+    const auto wall_at = [&](Index face) { return wall_of(topology, materials, face); };
     std::vector<Index> cells;
     for (Index c = 0; c < topology.cells.size(); ++c) {
-        const bool at_boundary =
-            std::ranges::any_of(topology.cell_faces[c], [&](Index face) { return topology.face_on_hull(face); });
-        if (at_boundary || !interpolates(scheme.kind)) cells.push_back(c);
+        const bool at_wall = std::ranges::any_of(topology.cell_faces[c], [&](Index face) { return wall_at(face) != kNone; });
+        if (at_wall || !interpolates(scheme.kind)) cells.push_back(c);
     }
     constexpr int kLevels = 2;
     constexpr std::size_t kDescendants = 64;
     const HexMesh fine = on_limit(refine_cells(mesh, cells, {.scheme = scheme, .levels = kLevels}), scheme.kind);
-    SurfaceBuilder boundary(fine.points.size());
-    for (std::size_t c = 0; c < fine.cells.size(); ++c) {
-        const auto& faces = topology.cell_faces[cells[c / kDescendants]];
-        for (std::size_t side = 0; side < 6; ++side) {
-            // A child lies at a side of its parent where its corner does.
-            const auto at_side = [&](std::size_t corner) { return std::ranges::count(kCellFaces[side], corner) > 0; };
-            if (!topology.face_on_hull(faces[side]) || !at_side(c % 8) || !at_side(c / 8 % 8)) continue;
-            std::array<Index, 4> quad;
-            for (std::size_t k = 0; k < 4; ++k) quad[k] = fine.cells[c][kCellFaces[side][k]];
-            std::rotate(quad.begin(), std::ranges::min_element(quad), quad.end());
-            boundary.add(quad);
+    std::vector<FineWalls> walls(materials.empty() ? 1 : std::size_t{1} + std::ranges::max(materials));
+    for (Index m = 0; m < walls.size(); ++m) {
+        SurfaceBuilder closed(fine.points.size()), own(fine.points.size());
+        for (std::size_t c = 0; c < fine.cells.size(); ++c) {
+            const Index parent = cells[c / kDescendants];
+            if (!materials.empty() && materials[parent] != m) continue;
+            const auto& faces = topology.cell_faces[parent];
+            for (std::size_t side = 0; side < 6; ++side) {
+                // A child lies at a side of its parent where its corner does.
+                const auto at_side = [&](std::size_t corner) { return std::ranges::count(kCellFaces[side], corner) > 0; };
+                const Index wall = wall_at(faces[side]);
+                if (wall == kNone || !at_side(c % 8) || !at_side(c / 8 % 8)) continue;
+                std::array<Index, 4> quad;
+                for (std::size_t k = 0; k < 4; ++k) quad[k] = fine.cells[c][kCellFaces[side][k]];
+                std::rotate(quad.begin(), std::ranges::min_element(quad), quad.end());
+                closed.add(quad);
+                if (wall != m) continue;
+                own.add(quad);
+                walls[m].sides.push_back({parent, static_cast<std::uint8_t>(side)});
+            }
         }
+        const auto place = [&](Index p) { return fine.points[p]; };
+        walls[m].closed = closed.finish(place);
+        walls[m].own = own.finish(place);
     }
-    return boundary.finish([&](Index p) { return fine.points[p]; });
+    return walls;
 }
 
-ShapeError error_of(const Surface& boundary, const Surface& surface, const Progress* progress) {
+ShapeError error_of(const std::vector<FineWalls>& fine, const WallTargets& walls, const Progress* progress) {
     if (is_cancelled(progress)) return {};
-    return SurfaceDistances(surface, boundary.points.size(), progress).error(boundary);
+    DistanceSums sums;
+    for (std::size_t m = 0; m < fine.size(); ++m) {
+        if (fine[m].own.triangles.empty()) continue;
+        SurfaceDistances(walls.targets[m], fine[m].own.points.size(), progress).add_errors(fine[m].own, sums);
+    }
+    return sums.result();
+}
+
+/// The sides of the hull that are over holes, most of them.
+std::vector<CellSide> lids_of(const std::vector<FineWalls>& fine, const WallTargets& walls) {
+    std::vector<std::pair<CellSide, double>> parts;
+    for (std::size_t m = 0; m < fine.size(); ++m) {
+        const Surface& own = fine[m].own;
+        if (own.triangles.empty() || open_edges(*walls.targets[m].surface).count == 0) continue;
+        const std::vector<std::uint8_t> over = SurfaceDistances(walls.targets[m], 1).over_holes(own);
+        for (std::size_t t = 0; t < own.triangles.size(); ++t) {
+            const auto& corners = own.triangles[t];
+            const Vec3& a = own.points[corners[0]];
+            const double area = glm::length(glm::cross(own.points[corners[1]] - a, own.points[corners[2]] - a));
+            const auto count = std::ranges::count_if(corners, [&](Index p) { return over[p] != 0; });
+            constexpr double kHalf = 1.5;  // of three corners
+            parts.emplace_back(fine[m].sides[t / 2], (static_cast<double>(count) - kHalf) * area);
+        }
+    }
+    const auto key = [](const auto& part) { return std::pair(part.first.cell, part.first.side); };
+    std::ranges::stable_sort(parts, {}, key);
+    std::vector<CellSide> lids;
+    for (std::size_t k = 0, end = 0; k < parts.size(); k = end) {
+        double sum = 0;
+        for (end = k; end < parts.size() && parts[end].first == parts[k].first; ++end) sum += parts[end].second;
+        if (sum > 0) lids.push_back(parts[k].first);
+    }
+    return lids;
 }
 
 }  // namespace
 
 namespace detail {
 
-ShapeFitter::ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme, const Progress* progress)
+ShapeFitter::ShapeFitter(const Topology& control, const WallTargets& walls, const SchemeOptions& scheme,
+                         const Progress* progress)
     : cells_(control.cells),
       edges_(control.edges),
       point_edges_(control.point_edges),
       boundary_points_(static_cast<std::size_t>(std::ranges::count(control.point_on_boundary, 1))),
       children_(scheme.kind == Scheme::Linear ? RefinementTables{control.point_count, {}, control.cells, {}, {}}
                                               : refinement_tables(control, {.scheme = scheme, .levels = 1})),
-      matrix_(control, scheme),
-      distances_(surface, matrix_.rows(), progress),
+      matrix_(control, walls.materials, scheme),
       progress_(progress) {
+    for (std::size_t m = 0; m < matrix_.walls().size(); ++m) {
+        distances_.emplace_back(walls.targets[m], matrix_.walls()[m].rows.size(), progress);
+    }
 }
 
 std::vector<Pull> ShapeFitter::pulls(const Vectors& control) const {
-    const Surface boundary{matrix_.apply(control), matrix_.triangles()};
-    std::vector<Pull> made = distances_.pulls(boundary, static_cast<double>(boundary_points_));
+    const Vectors places = matrix_.apply(control);
+    std::vector<Pull> made;
+    for (std::size_t m = 0; m < distances_.size(); ++m) {
+        const WallRows& wall = matrix_.walls()[m];
+        if (wall.triangles.empty()) continue;
+        const double part = static_cast<double>(wall.rows.size()) / static_cast<double>(matrix_.rows());
+        for (Pull& pull : distances_[m].pulls(wall.surface(places), part * static_cast<double>(boundary_points_))) {
+            for (Index& point : pull.points) point = wall.rows[point];
+            made.push_back(pull);
+        }
+    }
     constexpr double kSharp = 1;
-    std::ranges::move(sharp_.pulls(boundary.points, kSharp), std::back_inserter(made));
+    std::ranges::move(sharp_.pulls(places, kSharp), std::back_inserter(made));
     return made;
 }
 
@@ -208,10 +269,29 @@ void ShapeFitter::keep_sound(const Vectors& control, Vectors& ways) const {
 }
 
 ShapeError ShapeFitter::error(const Vectors& control) const {
-    return distances_.error({matrix_.apply(control), matrix_.triangles()});
+    const Vectors places = matrix_.apply(control);
+    DistanceSums sums;
+    for (std::size_t m = 0; m < distances_.size(); ++m) {
+        const WallRows& wall = matrix_.walls()[m];
+        if (!wall.triangles.empty()) distances_[m].add_errors(wall.surface(places), sums);
+    }
+    return sums.result();
 }
 
-HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& options, FitShapeReport& report) {
+Vectors ShapeFitter::places_beyond(const Vectors& control, double far) const {
+    const Vectors places = matrix_.apply(control);
+    Vectors beyond;
+    for (std::size_t m = 0; m < distances_.size(); ++m) {
+        const WallRows& wall = matrix_.walls()[m];
+        if (!wall.triangles.empty()) {
+            std::ranges::move(distances_[m].places_beyond(wall.surface(places), far), std::back_inserter(beyond));
+        }
+    }
+    return beyond;
+}
+
+FinishedShape finished(HexMesh mesh, const WallTargets& walls, const FitShapeOptions& options, FitShapeReport& report) {
+    FinishedShape made;
     FoldOptions folds;
     folds.scheme = options.scheme;
     folds.progress = options.progress;
@@ -236,10 +316,20 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
         report.warnings.push_back(counted(report.inverted_cells.size(), "control cell is", "control cells are") +
                                   " turned inside out at a corner: " + first_of(report.inverted_cells));
     }
-    const Surface boundary = fine_boundary(mesh, options.scheme);
-    report.after = error_of(boundary, surface, options.progress);
-    report.volume_world = enclosed_volume(boundary);
-    const OpenEdges open = open_edges(surface);
+    const std::vector<FineWalls> fine = fine_walls(mesh, walls.materials, options.scheme);
+    report.after = error_of(fine, walls, options.progress);
+    report.volume_world = 0;
+    for (const FineWalls& wall : fine) {
+        made.volumes.push_back(wall.closed.triangles.empty() ? 0 : enclosed_volume(wall.closed));
+        report.volume_world += made.volumes.back();
+    }
+    made.lids = lids_of(fine, walls);
+    OpenEdges open;
+    for (const WallTarget& target : walls.targets) {
+        const OpenEdges own = open_edges(*target.surface);
+        open.count += own.count;
+        open.length_world += own.length_world;
+    }
     report.open_edges = open.count;
     report.open_length_world = open.length_world;
     if (report.after.hole_part > 0) {
@@ -253,13 +343,12 @@ HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& op
                                   " to one triangle alone, of the length " + number_text(open.length_world, kDigits));
     }
     report_progress(options.progress, "fit shape", 1);  // ends what was cancelled
-    return mesh;
+    made.mesh = std::move(mesh);
+    return made;
 }
 
-ShapeError error_until(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme, const Progress* progress) {
-    validate(mesh);
-    validate(surface);
-    return error_of(fine_boundary(mesh, scheme), surface, progress);
+ShapeError error_until(const HexMesh& mesh, const WallTargets& walls, const SchemeOptions& scheme, const Progress* progress) {
+    return error_of(fine_walls(mesh, walls.materials, scheme), walls, progress);
 }
 
 }  // namespace detail
@@ -329,7 +418,10 @@ Facts facts_of(const FitShapeReport& report) {
 }
 
 ShapeError shape_error(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme) {
-    return error_until(mesh, surface, scheme, nullptr);
+    validate(mesh);
+    validate(surface);
+    const WallTarget target{&surface};
+    return error_until(mesh, {{}, {&target, 1}}, scheme, nullptr);
 }
 
 ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions& given) {
@@ -341,9 +433,11 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
     if (options.scheme.crease_angle_deg) tag_creases(mesh, *options.scheme.crease_angle_deg);
     options.scheme.crease_angle_deg.reset();
     FitShapeReport report;
-    report.before = error_until(mesh, surface, options.scheme, options.progress);
+    const WallTarget target{&surface};
+    const WallTargets walls{{}, {&target, 1}};
+    report.before = error_until(mesh, walls, options.scheme, options.progress);
     report_progress(options.progress, "fit shape", 0);  // ends what was cancelled
-    const ShapeFitter fitter(build_topology(mesh), surface, options.scheme, options.progress);
+    const ShapeFitter fitter(build_topology(mesh), walls, options.scheme, options.progress);
     const std::vector<Vec3> start = mesh.points;
     double best = std::numeric_limits<double>::infinity();
     for (int round = 0; round < options.rounds; ++round) {
@@ -357,7 +451,7 @@ ShapedMesh fit_shape(HexMesh mesh, const Surface& surface, const FitShapeOptions
         mesh.points = std::move(points);
         ++report.rounds;
     }
-    mesh = finished(std::move(mesh), surface, options, report);
+    mesh = finished(std::move(mesh), walls, options, report).mesh;
     for (std::size_t p = 0; p < start.size(); ++p) {
         report.moved_world = std::max(report.moved_world, glm::distance(start[p], mesh.points[p]));
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesh_walls.h"
 #include "subvol/cell.h"
 #include "subvol/topology.h"
 
@@ -23,7 +24,7 @@ public:
         }
         for (const auto& [a, b] : layers.cuts) {
             for (const Index f : topology.edge_faces[*topology.find_edge(a, b)]) {
-                if (!topology.face_on_hull(f)) parting_[f] = 1;
+                if (wall_of(topology, layers.materials, f) == kNone) parting_[f] = 1;
             }
         }
     }
@@ -109,19 +110,23 @@ LayeredMesh with_layers(const HexMesh& mesh, const Layers& layers) {
     return made;
 }
 
-LayeredMesh with_layer_at_hull(const HexMesh& mesh) {
+LayeredMesh with_layer_at_walls(const HexMesh& mesh, std::span<const Index> materials) {
     constexpr double kInwards = 0.5;
-    return with_layers(mesh, {.parts = std::vector<Index>(mesh.cells.size(), 0), .at_hull = true, .inwards = kInwards});
+    const std::vector<Index> one(materials.empty() ? mesh.cells.size() : 0, 0);
+    return with_layers(
+        mesh, {.parts = materials.empty() ? std::span<const Index>(one) : materials, .at_hull = true, .inwards = kInwards});
 }
 
-LayeredMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along) {
+LayeredMesh with_layer_along(const HexMesh& mesh, std::span<const std::array<Index, 2>> along,
+                             std::span<const Index> materials) {
     const Topology topology = build_topology(mesh);
     std::vector<Index> parts(mesh.cells.size(), kNone);
     for (Index c = 0; c < parts.size(); ++c) {
-        if (std::ranges::any_of(topology.cell_faces[c], [&](Index f) { return topology.face_on_hull(f); })) parts[c] = 0;
+        const auto at_wall = [&](Index f) { return wall_of(topology, materials, f) != kNone; };
+        if (std::ranges::any_of(topology.cell_faces[c], at_wall)) parts[c] = 0;
     }
     constexpr double kInwards = 0.3;
-    return with_layers(mesh, {.parts = parts, .cuts = along, .inwards = kInwards});
+    return with_layers(mesh, {.parts = parts, .cuts = along, .materials = materials, .inwards = kInwards});
 }
 
 }  // namespace subvol::detail

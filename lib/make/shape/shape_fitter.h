@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
+#include <span>
 #include <vector>
 
+#include "mesh_walls.h"
 #include "sharp_pulls.h"
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_sums.h"
 #include "subvol/fit_shape.h"
+#include "subvol/mesh_sets.h"
 #include "subvol/refine.h"
 #include "subvol/topology.h"
 #include "surface_distances.h"
@@ -22,12 +26,17 @@ struct CellAims {
     std::vector<double> weights;  ///< of the distortion of each cell: 1, or more where it has to be less
 };
 
-/// The boundary of a limit and a surface that it is fitted to.
+/// A mesh and the surfaces that the walls of its materials are fitted to.
+struct WallTargets {
+    std::span<const Index> materials;     ///< as of `wall_of`
+    std::span<const WallTarget> targets;  ///< of each material; the surfaces are referred to
+};
+
+/// The walls of a limit and the surfaces that they are fitted to.
 class ShapeFitter {
 public:
-    /// surface:  referred to
     /// progress: asked whether the work is cancelled: the steps end then, and what they return is of no use
-    ShapeFitter(const Topology& control, const Surface& surface, const SchemeOptions& scheme,
+    ShapeFitter(const Topology& control, const WallTargets& walls, const SchemeOptions& scheme,
                 const Progress* progress = nullptr);
 
     /// Creases are drawn to sharp edges of the surface, too, by `relaxed`.
@@ -48,9 +57,7 @@ public:
     [[nodiscard]] ShapeError error(const std::vector<Vec3>& control) const;
 
     /// The places of the boundary and the surface whose distances are above `far`.
-    [[nodiscard]] std::vector<Vec3> places_beyond(const std::vector<Vec3>& control, double far) const {
-        return distances_.places_beyond({matrix_.apply(control), matrix_.triangles()}, far);
-    }
+    [[nodiscard]] std::vector<Vec3> places_beyond(const std::vector<Vec3>& control, double far) const;
 
     /// The points with less distorted cells and the boundary nearer to the surface, by quasi-Newton steps. Cells that are
     /// turned inside out are turned back where they can be.
@@ -94,16 +101,23 @@ private:
     std::size_t boundary_points_;
     RefinementTables children_;
     SurfaceMatrix matrix_;
-    SurfaceDistances distances_;
+    std::deque<SurfaceDistances> distances_;  // of each material
     const Progress* progress_;
     SharpPulls sharp_;
 };
 
+struct FinishedShape {
+    HexMesh mesh;
+    std::vector<double> volumes;  ///< what the limit of each material fills
+    std::vector<CellSide> lids;   ///< sides that are over holes of the surfaces, most of them
+};
+
 /// The end of a fit: folds are mended if that is asked for, and the report gets what is known in the end.
-[[nodiscard]] HexMesh finished(HexMesh mesh, const Surface& surface, const FitShapeOptions& options, FitShapeReport& report);
+[[nodiscard]] FinishedShape finished(HexMesh mesh, const WallTargets& walls, const FitShapeOptions& options,
+                                     FitShapeReport& report);
 
 /// `shape_error`, of no use once the work is cancelled.
-[[nodiscard]] ShapeError error_until(const HexMesh& mesh, const Surface& surface, const SchemeOptions& scheme,
+[[nodiscard]] ShapeError error_until(const HexMesh& mesh, const WallTargets& walls, const SchemeOptions& scheme,
                                      const Progress* progress);
 
 }  // namespace subvol::detail

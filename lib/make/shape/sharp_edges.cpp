@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The sharp edges of a surface as chains. Edges of two triangles that are bent, also as seen from a part of a cell away, are
+// taken where the surface is to be reached on one of their sides, and joined to chains from corner to corner. Chains that are
+// noise are left out, and all is traced again until there are none.
 #include "sharp_edges.h"
 
 #include <algorithm>
@@ -71,7 +74,8 @@ private:
 /// The chains of some edges.
 class Chains {
 public:
-    Chains(const Surface& surface, std::vector<std::array<Index, 2>> edges) : surface_(surface), edges_(std::move(edges)) {
+    Chains(const std::vector<Vec3>& points, std::vector<std::array<Index, 2>> edges)
+        : points_(points), edges_(std::move(edges)) {
         for (std::size_t e = 0; e < edges_.size(); ++e) {
             for (const Index p : edges_[e]) ends_.push_back({p, e});
         }
@@ -88,15 +92,15 @@ public:
             const Index p = ends_[k].first;
             if ((k > 0 && ends_[k - 1].first == p) || !corner(p)) continue;
             corners.emplace_back(p, static_cast<Index>(made.corners.size()));
-            made.corners.push_back(surface_.points[p]);
+            made.corners.push_back(points_[p]);
         }
         const auto trace = [&](Index start, std::size_t edge, bool closed) {
-            SharpCurve curve{{surface_.points[start]}};
+            SharpCurve curve{{points_[start]}};
             Index at = start;
             for (;;) {
                 chain[edge] = made.curves.size();
                 at = edges_[edge][edges_[edge][0] == at ? 1 : 0];
-                curve.points.push_back(surface_.points[at]);
+                curve.points.push_back(points_[at]);
                 if (at == start || corner(at)) break;
                 for (const auto& [p, e] : at_point(at)) {
                     if (e != edge) {
@@ -132,13 +136,13 @@ private:
         std::array<Vec3, 2> away;
         for (std::size_t k = 0; k < 2; ++k) {
             const auto& [a, b] = edges_[ends[k].second];
-            away[k] = glm::normalize(surface_.points[a == p ? b : a] - surface_.points[p]);
+            away[k] = glm::normalize(points_[a == p ? b : a] - points_[p]);
         }
         constexpr double kTurn = -0.64;  // the cosine of 130°: a turn by 50°
         return glm::dot(away[0], away[1]) > kTurn;
     }
 
-    const Surface& surface_;
+    const std::vector<Vec3>& points_;
     std::vector<std::array<Index, 2>> edges_;
     std::vector<std::pair<Index, std::size_t>> ends_;  // the edges at each point
 };
@@ -181,6 +185,46 @@ std::vector<std::uint8_t> noise_among(const SharpEdges& found, double side) {
     return noise;
 }
 
+/// Adds an edge, or the parts of it that are reached and new.
+void add_reached(const WallTarget& target, const BentEdge& edge, double side, const std::function<bool(const Vec3&)>& is_new,
+                 std::vector<Vec3>& points, std::vector<std::array<Index, 2>>& edges) {
+    const Surface& surface = *target.surface;
+    const Vec3 a = surface.points[edge.ends[0]], b = surface.points[edge.ends[1]];
+    constexpr double kPart = 0.25, kMost = 1e4;  // sides
+    const double parts = target.reaches ? std::clamp(std::ceil(glm::distance(a, b) / (kPart * side)), 1.0, kMost) : 1;
+    const auto at = [&](double part) { return a + part * (b - a); };
+    const auto taken = [&](double from, double to) {
+        const double middle = (from + to) / 2;
+        if (is_new && !is_new(at(from)) && !is_new(at(middle)) && !is_new(at(to))) return false;
+        return std::ranges::any_of(edge.triangles, [&](Index triangle) {
+            const auto& t = surface.triangles[triangle];
+            const Vec3& x = surface.points[t[0]];
+            const Vec3 normal = glm::normalize(glm::cross(surface.points[t[1]] - x, surface.points[t[2]] - x));
+            const Vec3 inwards = (x + surface.points[t[1]] + surface.points[t[2]]) / 3.0 - at(middle);
+            constexpr double kBeside = 0.05;
+            return target.reached(at(middle) + std::min(1.0, kBeside * side / glm::length(inwards)) * inwards, normal);
+        });
+    };
+    Index last = edge.ends[0];
+    bool joined = true;  // the end of the part before is a point
+    for (double part = 1; part <= parts; ++part) {
+        const bool take = taken((part - 1) / parts, part / parts);
+        if (take && !joined) {
+            last = static_cast<Index>(points.size());
+            points.push_back(at((part - 1) / parts));
+        }
+        joined = take;
+        if (!take) continue;
+        Index next = edge.ends[1];
+        if (part < parts) {
+            next = static_cast<Index>(points.size());
+            points.push_back(at(part / parts));
+        }
+        edges.push_back({std::min(last, next), std::max(last, next)});
+        last = next;
+    }
+}
+
 }  // namespace
 
 double SharpCurve::length() const {
@@ -199,19 +243,22 @@ Vec3 SharpCurve::at(double part) const {
     return points.back();
 }
 
-SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side) {
+SharpEdges sharp_edges(const WallTarget& target, double angle_deg, double side,
+                       const std::function<bool(const Vec3&)>& is_new) {
     constexpr double kSame = 1e-5;  // sides
+    const Surface& surface = *target.surface;
     const std::vector<BentEdge> all = edges_of_two(surface, kSame * side);
     const Bend bend(surface, angle_deg, side);
     std::vector<std::uint8_t> bent(all.size());
     parallel_each(all.size(), [&](std::size_t e) { bent[e] = bend.at(all[e]) ? 1 : 0; });
+    std::vector<Vec3> points = surface.points;
     std::vector<std::array<Index, 2>> edges;
     for (std::size_t e = 0; e < all.size(); ++e) {
-        if (bent[e] != 0) edges.push_back(all[e].ends);
+        if (bent[e] != 0) add_reached(target, all[e], side, is_new, points, edges);
     }
     for (;;) {
         std::vector<std::size_t> chain;
-        SharpEdges found = Chains(surface, edges).traced(chain);
+        SharpEdges found = Chains(points, edges).traced(chain);
         const std::vector<std::uint8_t> noise = noise_among(found, side);
         if (std::ranges::count(noise, 1) == 0) return found;
         std::vector<std::array<Index, 2>> kept;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "mesh_walls.h"
 #include "subvol/surface.h"
 #include "surface_tree.h"
 
@@ -31,8 +33,11 @@ struct SharpEdges {
 /// The edges of a surface where it is bent by more than an angle, also as seen from a part of a cell away. What is
 /// noise is left out: chains that end freely within a few cells, small rings, and nets of chains shorter than a cell or two.
 ///
-/// side: of a cell
-[[nodiscard]] SharpEdges sharp_edges(const Surface& surface, double angle_deg, double side);
+/// target: edges are taken where its surface is reached on one side of them at least
+/// side:   of a cell
+/// is_new: edges are left out where it is false at their ends and middle; none: all are taken
+[[nodiscard]] SharpEdges sharp_edges(const WallTarget& target, double angle_deg, double side,
+                                     const std::function<bool(const Vec3&)>& is_new = {});
 
 /// The place of a curve that is nearest to a point, and the curve's direction there.
 struct CurvePlace {

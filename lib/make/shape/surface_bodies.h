@@ -45,6 +45,9 @@ public:
     /// What the walls enclose; nothing where it is not known, as some are open, cross each other or have only one side.
     [[nodiscard]] std::optional<double> volume() const;
 
+    /// Whether there are walls that may touch others, or lie within them.
+    [[nodiscard]] bool has_several_walls() const { return walls_.size() > 1 || report_.many_edges > 0; }
+
     /// Whether nothing is closed.
     [[nodiscard]] bool is_open() const { return walls_.size() == 1 && !walls_.front().closed; }
 

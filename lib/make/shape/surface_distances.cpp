@@ -12,31 +12,14 @@ namespace subvol::detail {
 
 namespace {
 
-/// Places spread evenly over a surface: at equal steps of its area, in each triangle at the next of a sequence of low
-/// discrepancy.
-///
-/// source: [roberts2018]
-std::vector<Vec3> places_on(const Surface& surface, std::size_t count) {
-    std::vector<double> sums{0};
-    for (const auto& t : surface.triangles) {
-        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
-        sums.push_back(sums.back() + glm::length(glm::cross(b - a, c - a)));
-    }
+/// The samples that a target's walls are to reach.
+std::vector<Vec3> places_on(const WallTarget& target, std::size_t count) {
+    const std::vector<SurfaceSample> samples = samples_on(*target.surface, count);
+    std::vector<std::uint8_t> reached(count);
+    parallel_each(count, [&](std::size_t i) { reached[i] = target.reached(samples[i].place, samples[i].normal) ? 1 : 0; });
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < count; ++i) {
-        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sums.back();
-        const auto above = std::ranges::upper_bound(sums, at);
-        const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(above - sums.begin()), sums.size() - 1) - 1;
-        constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;  // 1/g and 1/g² with g³ = g + 1
-        double whole = 0;
-        double u = std::modf(kFirst * static_cast<double>(i), &whole), v = std::modf(kSecond * static_cast<double>(i), &whole);
-        if (u + v > 1) {
-            u = 1 - u;
-            v = 1 - v;
-        }
-        const auto& corners = surface.triangles[t];
-        const Vec3& a = surface.points[corners[0]];
-        places.push_back(a + u * (surface.points[corners[1]] - a) + v * (surface.points[corners[2]] - a));
+        if (reached[i] != 0) places.push_back(samples[i].place);
     }
     return places;
 }
@@ -52,8 +35,37 @@ std::vector<std::array<std::uint8_t, 3>> open_sides_of(const Surface& surface) {
 
 }  // namespace
 
-SurfaceDistances::SurfaceDistances(const Surface& surface, std::size_t places, const Progress* progress)
-    : open_sides_(open_sides_of(surface)), tree_(surface), places_(places_on(surface, places)), progress_(progress) {
+std::vector<SurfaceSample> samples_on(const Surface& surface, std::size_t count) {
+    std::vector<double> sums{0};
+    for (const auto& t : surface.triangles) {
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
+        sums.push_back(sums.back() + glm::length(glm::cross(b - a, c - a)));
+    }
+    std::vector<SurfaceSample> samples;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * sums.back();
+        const auto above = std::ranges::upper_bound(sums, at);
+        const std::size_t t = std::min<std::size_t>(static_cast<std::size_t>(above - sums.begin()), sums.size() - 1) - 1;
+        constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;  // 1/g and 1/g² with g³ = g + 1
+        double whole = 0;
+        double u = std::modf(kFirst * static_cast<double>(i), &whole), v = std::modf(kSecond * static_cast<double>(i), &whole);
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        const auto& corners = surface.triangles[t];
+        const Vec3& a = surface.points[corners[0]];
+        const Vec3 b = surface.points[corners[1]] - a, c = surface.points[corners[2]] - a;
+        samples.push_back({a + u * b + v * c, glm::normalize(glm::cross(b, c))});
+    }
+    return samples;
+}
+
+SurfaceDistances::SurfaceDistances(const WallTarget& target, std::size_t places, const Progress* progress)
+    : open_sides_(open_sides_of(*target.surface)),
+      tree_(*target.surface),
+      places_(places_on(target, places)),
+      progress_(progress) {
 }
 
 bool SurfaceDistances::at_hole(const SurfacePlace& place) const {
@@ -89,16 +101,15 @@ std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight
     return made;
 }
 
-ShapeError SurfaceDistances::error(const Surface& boundary) const {
+void SurfaceDistances::add_errors(const Surface& boundary, DistanceSums& sums) const {
     const std::vector<Pull> found = pulls(boundary, 1);
     const std::size_t first = boundary.points.size();
-    const auto at_hole = [&](std::size_t k) { return k < first && found[k].weight == 0; };
-    ShapeError error;
-    std::size_t covered = 0;
+    const auto over_hole = [&](std::size_t k) { return k < first && found[k].weight == 0; };
+    ShapeError& error = sums.error;
     for (std::size_t k = 0; k < found.size(); ++k) {
         const double distance = found[k].distance;
-        if (k < first && !at_hole(k)) {
-            ++covered;
+        if (k < first && !over_hole(k)) {
+            ++sums.covered;
             error.covered_rms += distance * distance;
             error.covered_max = std::max(error.covered_max, distance);
         }
@@ -110,21 +121,32 @@ ShapeError SurfaceDistances::error(const Surface& boundary) const {
         most = distance;
         at = missed ? places_[k - first] : boundary.points[k];
     }
-    const auto root = [](double sum, std::size_t count) {
-        return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
-    };
-    error.rms = root(error.rms, first);
-    error.covered_rms = root(error.covered_rms, covered);
-    error.missed_rms = root(error.missed_rms, places_.size());
-    double area = 0, over_holes = 0;
+    sums.points += first;
+    sums.places += places_.size();
     for (const auto& t : boundary.triangles) {
         const Vec3& a = boundary.points[t[0]];
         const double here = glm::length(glm::cross(boundary.points[t[1]] - a, boundary.points[t[2]] - a));
-        area += here;
-        over_holes += here / 3 * static_cast<double>(std::ranges::count_if(t, at_hole));
+        sums.area += here;
+        error.hole_part += here / 3 * static_cast<double>(std::ranges::count_if(t, over_hole));
     }
-    if (area > 0) error.hole_part = over_holes / area;
-    return error;
+}
+
+std::vector<std::uint8_t> SurfaceDistances::over_holes(const Surface& boundary) const {
+    std::vector<std::uint8_t> flags(boundary.points.size());
+    parallel_each(flags.size(), [&](std::size_t p) { flags[p] = at_hole(tree_.nearest(boundary.points[p])) ? 1 : 0; });
+    return flags;
+}
+
+ShapeError DistanceSums::result() const {
+    const auto root = [](double sum, std::size_t count) {
+        return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+    };
+    ShapeError made = error;
+    made.rms = root(error.rms, points);
+    made.covered_rms = root(error.covered_rms, covered);
+    made.missed_rms = root(error.missed_rms, places);
+    made.hole_part = area > 0 ? error.hole_part / area : 0;
+    return made;
 }
 
 std::vector<Vec3> SurfaceDistances::places_beyond(const Surface& boundary, double far) const {

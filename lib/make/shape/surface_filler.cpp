@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "layers.h"
 #include "subvol/cell.h"
 #include "subvol/detail/fold_samples.h"
 #include "subvol/detail/mesh_subset.h"
@@ -16,8 +15,8 @@ namespace {
 
 /// The sides of a mesh's cells, given those of the cells that they lie in, so that the volume remains. They change step by
 /// step.
-std::vector<double> sides_of(const LayeredMesh& mesh, const std::vector<double>& sides) {
-    const auto volume = [](const std::vector<double>& of) {
+std::vector<double> sides_of(const LayeredMesh& mesh, std::span<const double> sides) {
+    const auto volume = [](std::span<const double> of) {
         double sum = 0;
         for (const double side : of) sum += side * side * side;
         return sum;
@@ -63,13 +62,9 @@ SharpEdgeReport report_of(const SharpEdges& sharp, const SharpPaths& paths, cons
 }  // namespace
 
 void SurfaceFiller::fill(const SizedMesh& inside) {
-    LayeredMesh layered = with_layer_at_hull(inside.mesh);
-    aims_.sides = sides_of(layered, inside.sides);
-    aims_.weights.assign(aims_.sides.size(), 1);
-    mesh_ = std::move(layered.mesh);
-    start_ = mesh_.points;
+    put_layers(with_layer_at_walls(inside.mesh, inside.materials), inside.sides, inside.materials);
     paths_ = {};
-    report_.shape.before = error_until(mesh_, surface_, options_.scheme, options_.progress);
+    report_.shape.before = error_until(mesh_, walls(), options_.scheme, options_.progress);
     report_.shape.rounds = 0;
     // The first rounds have control cells, as the limit of cubes is none of the surface's.
     const int half = options_.rounds / 2;
@@ -78,17 +73,25 @@ void SurfaceFiller::fill(const SizedMesh& inside) {
     if (!paths_.creases.empty()) {
         std::vector<std::array<Index, 2>> along = paths_.creases;
         along.insert(along.end(), paths_.cuts.begin(), paths_.cuts.end());
-        layered = with_layer_along(mesh_, along);
-        aims_.sides = sides_of(layered, aims_.sides);
-        aims_.weights.assign(aims_.sides.size(), 1);
-        mesh_ = std::move(layered.mesh);
+        put_layers(with_layer_along(mesh_, along, materials_), std::vector(aims_.sides), std::vector(materials_));
         mesh_.creases = paths_.creases;
-        start_ = mesh_.points;
         draw(Scheme::Linear, half / 2, half);
     }
     draw(options_.scheme.kind, half, options_.rounds);
     straighten();
     report_.sharp = report_of(sharp_, paths_, fitter_->sharp_error(mesh_.points));
+}
+
+/// sides, materials: of the cells before there were layers
+void SurfaceFiller::put_layers(LayeredMesh layered, std::span<const double> sides, std::span<const Index> materials) {
+    aims_.sides = sides_of(layered, sides);
+    aims_.weights.assign(aims_.sides.size(), 1);
+    materials_.clear();
+    for (std::size_t c = 0; c < layered.from.size() && !materials.empty(); ++c)
+        materials_.push_back(materials[layered.from[c]]);
+    mesh_ = std::move(layered.mesh);
+    sharpen_walls(mesh_, materials_);
+    start_ = mesh_.points;
 }
 
 std::vector<Vec3> SurfaceFiller::places_beyond(double far) const {
@@ -104,7 +107,7 @@ std::vector<Vec3> SurfaceFiller::places_beyond(double far) const {
 void SurfaceFiller::draw(Scheme kind, int first, int end) {
     SchemeOptions scheme = options_.scheme;
     scheme.kind = kind;
-    fitter_.emplace(build_topology(mesh_), surface_, scheme, options_.progress);
+    fitter_.emplace(build_topology(mesh_), walls(), scheme, options_.progress);
     fitter_->follow(sharp_, paths_);
     for (int round = first; round < end; ++round) {
         const double part = static_cast<double>(round) / options_.rounds;

@@ -12,16 +12,26 @@
 
 namespace subvol::detail {
 
-/// The limit of the boundary at the points of level 1 as rows of weights over the control points, and triangles between these
+/// The walls of one material: the rows of their points, and triangles by the numbers of these rows.
+struct WallRows {
+    std::vector<Index> rows;
+    std::vector<std::array<Index, 3>> triangles;
+
+    [[nodiscard]] Surface surface(std::span<const Vec3> points) const;
+};
+
+/// The limit of the walls at the points of level 1 as rows of weights over the control points, and triangles between these
 /// points.
 class SurfaceMatrix {
 public:
-    SurfaceMatrix(const Topology& control, const SchemeOptions& scheme);
+    /// materials: as of `wall_of`
+    SurfaceMatrix(const Topology& control, std::span<const Index> materials, const SchemeOptions& scheme);
 
     [[nodiscard]] std::size_t rows() const { return matrix_.offsets.size() - 1; }
-    [[nodiscard]] const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
+    /// Of each material, one at least.
+    [[nodiscard]] const std::vector<WallRows>& walls() const { return walls_; }
 
-    /// The row of a control point on the boundary.
+    /// The row of a control point on a wall.
     [[nodiscard]] Index row_of(Index control) const { return rows_of_points_[control]; }
     /// For each crease of the control mesh the rows of one end, the middle and the other end.
     [[nodiscard]] const std::vector<std::array<Index, 3>>& crease_rows() const { return crease_rows_; }
@@ -35,7 +45,8 @@ public:
 private:
     std::size_t columns_ = 0;
     CsrMatrix matrix_, transpose_;
-    std::vector<std::array<Index, 3>> triangles_, crease_rows_;
+    std::vector<WallRows> walls_;
+    std::vector<std::array<Index, 3>> crease_rows_;
     std::vector<Index> rows_of_points_;
 };
 

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "subvol/fit_shape.h"
+#include "subvol/mesh_sets.h"
 
 namespace subvol {
 
@@ -54,16 +58,32 @@ struct ThinParts {
     Vec3 at{0.0};                ///< where they are about so thick
 };
 
+/// A surface, and the name of the material that it encloses.
+struct MaterialSurface {
+    std::string name;
+    Surface surface;
+};
+
+struct MaterialReport {
+    std::string name;
+    std::size_t cells = 0;
+    double volume_world = 0;  ///< what the limit of its cells fills
+    /// What its surface encloses without the materials within; nothing where the surface is open or crosses a smaller one
+    std::optional<double> enclosed_world{};
+};
+
 struct ControlMeshReport {
     FitShapeReport shape;  ///< how far the limit's boundary is from the surface; `before`: as cubes with a layer around them
     SharpEdgeReport sharp;
-    EnclosureReport surface;
-    std::optional<ThinParts> thin{};  ///< looked for if the mesh is not as it should be
-    std::size_t parts = 0;            ///< parts of the mesh that are not joined
-    std::size_t added = 0;            ///< cubes that were needed to make the boundary of the cubes a surface
-    int refined = 0;                  ///< how often cubes were divided
-    std::size_t divided = 0;          ///< how many cubes were divided in all
-    double side_world = 0;            ///< side of a cube that is not divided
+    EnclosureReport surface;                  ///< of all surfaces
+    std::vector<MaterialReport> materials{};  ///< in their order; none if there is one surface alone
+    std::optional<ThinParts> thin{};          ///< looked for if the mesh is not as it should be
+    std::size_t parts = 0;                    ///< parts of the mesh that are not joined
+    std::size_t added = 0;                    ///< cubes that were needed to make the boundary of the cubes a surface
+    int refined = 0;                          ///< how often cubes were divided
+    std::size_t divided = 0;                  ///< how many cubes were divided in all
+    double side_world = 0;                    ///< side of a cube that is not divided
+    std::size_t lid_sides = 0;  ///< sides of cells that are over holes of the surface, most of them: the patch `lid`
     /// What the surface encloses, to compare with `shape.volume_world`; nothing where it has holes or parts cross
     std::optional<double> enclosed_world{};
     /// Least of the control cells: 1 for cubes, negative if one is turned inside out at a corner
@@ -75,6 +95,8 @@ struct ControlMeshReport {
 
 struct ControlMesh {
     HexMesh mesh;
+    /// A set of cells of each material, if there are several; the patch `lid`, if some sides of cells are over holes
+    MeshSets sets;
     ControlMeshReport report;
 };
 
@@ -96,5 +118,13 @@ struct ControlMesh {
 /// any number of threads source:  [marechal2009] for layers over cubes, [barill2018] for what is inside, [garanzha2021] for
 /// distortions
 [[nodiscard]] ControlMesh control_mesh_of(const Surface& surface, const ControlMeshOptions& options = {});
+
+/// One mesh of several materials, each with a surface of its own. A place that several surfaces enclose has the material of the
+/// one that encloses least: a body within another is cut out of it, whatever their order. The cells of a material are a set.
+/// Faces between materials are drawn to the surfaces as the boundary is; they are sharp, so that the limit of each material
+/// ends there, and materials meet without gaps.
+///
+/// throws: Error(InvalidInput) as for one surface; if two materials have the same name, or if one has no cell
+[[nodiscard]] ControlMesh control_mesh_of(std::span<const MaterialSurface> materials, const ControlMeshOptions& options = {});
 
 }  // namespace subvol

@@ -157,7 +157,7 @@ TEST(WithLayer, LeavesCellsOneSideAtTheBoundaryAndKeepsThemSound) {
     });  // steps
     detail::make_manifold(all, std::vector<float>(chosen.size(), 1), chosen);
     const HexMesh cubes = chosen_of(all, chosen);
-    const HexMesh mesh = detail::with_layer_at_hull(cubes).mesh;
+    const HexMesh mesh = detail::with_layer_at_walls(cubes).mesh;
     const Topology topology = build_topology(mesh);
     std::size_t sides = 0;
     for (Index c = 0; c < mesh.cells.size(); ++c) {

@@ -286,7 +286,7 @@ TEST(ControlMesh, KeepsTheEdgesOfABox) {
 
 TEST(SharpPaths, PathsMeetInCornersAlone) {
     const Surface box = turned_box({2, 1, 1});
-    const detail::SharpEdges sharp = detail::sharp_edges(box, 40, 0.1);
+    const detail::SharpEdges sharp = detail::sharp_edges({&box}, 40, 0.1);
     ASSERT_EQ(sharp.curves.size(), 12U);
     ASSERT_EQ(sharp.corners.size(), 8U);
     const HexMesh mesh = control_mesh_of(box, {.cells = 16, .rounds = 4, .sharp_angle_deg = 180, .folds = {.keep = true}}).mesh;
@@ -336,11 +336,11 @@ TEST(SharpEdges, NoiseIsNone) {
     std::mt19937 dice(7);
     std::uniform_real_distribution<double> off(-0.02, 0.02);
     for (Vec3& x : ball.points) x *= 1 + off(dice);
-    EXPECT_TRUE(detail::sharp_edges(ball, 40, 0.2).curves.empty());
+    EXPECT_TRUE(detail::sharp_edges({&ball}, 40, 0.2).curves.empty());
     // A ring that is bent: the rim of a half ball, whose points are not shared by the two sides.
     Surface half = test::sphere(24);
     for (Vec3& x : half.points) x.z = std::max(x.z, 0.0);
-    const detail::SharpEdges rim = detail::sharp_edges(half, 40, 0.2);
+    const detail::SharpEdges rim = detail::sharp_edges({&half}, 40, 0.2);
     ASSERT_EQ(rim.curves.size(), 1U);
     EXPECT_TRUE(rim.curves[0].closed());
     EXPECT_NEAR(rim.curves[0].length(), 2 * std::numbers::pi, 0.1);
@@ -380,7 +380,8 @@ TEST(ShapeFitter, TurnsACellBackThatWasTurnedInsideOut) {
     const Index inner = 1 + 4 * (1 + 4 * 1);
     mesh.points[inner] += Vec3(1.6, 1.6, 1.6);
     ASSERT_LT(measure_cells(mesh).min_scaled_jacobian, 0);
-    const detail::ShapeFitter fitter(build_topology(mesh), sides, {.kind = Scheme::Linear});
+    const detail::WallTarget target{&sides};
+    const detail::ShapeFitter fitter(build_topology(mesh), {{}, {&target, 1}}, {.kind = Scheme::Linear});
     const std::vector<double> ones(mesh.cells.size(), 1);
     for (int k = 0; k < 3; ++k) mesh.points = fitter.relaxed(mesh.points, {ones, ones}, 10);
     EXPECT_GT(measure_cells(mesh).min_scaled_jacobian, 0.5);
