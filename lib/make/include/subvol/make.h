@@ -5,7 +5,7 @@
 ///
 /// - `fit_cell_means`: values at points whose limit has given means over the cells, as finite volumes have them.
 /// - `approximate`, `Approximator`: fields of a mesh near to samples, another mesh, points or a grid, by least squares.
-/// - `control_mesh_of`: hexahedra that fill a closed surface.
+/// - `control_mesh_of`: hexahedra that fill closed surfaces, each a material.
 /// - `fit_shape`: a mesh whose boundary lies near to a surface, without folds.
 /// - `read_surface`: closed surfaces of `.stl`, `.obj`, `.ply` and `.glb`; which names are surfaces, the wing files says.
 ///
