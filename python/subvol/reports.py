@@ -167,6 +167,7 @@ class ShapeError(TypedDict):
     covered_rms: float
     covered_max: float
     hole_part: float
+    reached_part: float
     missed_rms: float
     missed_max: float
     missed_at: list[float]
@@ -226,6 +227,8 @@ class ShapeReport(_Warnings):
 class SharpCurves(TypedDict):
     """The sharp edges of a surface that `control_mesh` followed."""
 
+    corners: int
+    missed_corners: int
     curves: int
     missed: int
     length_world: float
@@ -233,6 +236,14 @@ class SharpCurves(TypedDict):
     creases: int
     rms: float
     max: float
+
+
+class Features(TypedDict):
+    """The parts of a surface's features that a mesh by `control_mesh` has."""
+
+    points: float
+    curves: float
+    surfaces: float
 
 
 class SurfaceBodies(TypedDict):
@@ -285,6 +296,7 @@ class ControlMeshReport(ShapeReport, _Enclosed):
     side_world: float
     lid_sides: int
     sharp: SharpCurves
+    features: Features
     min_scaled_jacobian: float
     surface: SurfaceBodies
 

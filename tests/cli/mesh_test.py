@@ -58,6 +58,7 @@ class Mesh(InFolder):
         deck = self.run_ok("mesh", "lower.obj", "upper.obj", "-o", "two.inp", "--cells", "8", "--quiet") and (self.folder / "two.inp").read_text()
         self.assertIn("*ELSET, ELSET=lower", deck)
         self.assertIn("*ELSET, ELSET=upper", deck)
+        self.assertEqual(found["features"], {"points": 1, "curves": 1, "surfaces": 1})
         twice = subvol("mesh", "lower.obj", "lower.obj", "-o", "no.vtu", folder=self.folder)
         self.assertEqual(twice.code, 2)
         self.assertIn("lower: two materials have this name", twice.err)

@@ -207,6 +207,8 @@ Facts facts_of(const ControlMeshReport& report) {
     facts["lid_sides"] = report.lid_sides;
     if (report.enclosed_world) facts["enclosed_world"] = *report.enclosed_world;
     Facts& sharp = facts.group("sharp");
+    sharp["corners"] = report.sharp.corners;
+    sharp["missed_corners"] = report.sharp.missed_corners;
     sharp["curves"] = report.sharp.curves;
     sharp["missed"] = report.sharp.missed;
     sharp["length_world"] = report.sharp.length_world;
@@ -214,6 +216,11 @@ Facts facts_of(const ControlMeshReport& report) {
     sharp["creases"] = report.sharp.creases;
     sharp["rms"] = report.sharp.rms;
     sharp["max"] = report.sharp.max;
+    const auto kept = [](double missed, double all) { return all > 0 ? 1 - missed / all : 1; };
+    Facts& features = facts.group("features");
+    features["points"] = kept(static_cast<double>(report.sharp.missed_corners), static_cast<double>(report.sharp.corners));
+    features["curves"] = kept(report.sharp.missed_length_world, report.sharp.length_world);
+    features["surfaces"] = report.shape.after.reached_part;
     facts["min_scaled_jacobian"] = report.min_scaled_jacobian;
     if (report.thin) {
         Facts& thin = facts.group("thin");

@@ -398,6 +398,7 @@ Facts facts_of(const FitShapeReport& report) {
         group["covered_rms"] = error.covered_rms;
         group["covered_max"] = error.covered_max;
         group["hole_part"] = error.hole_part;
+        group["reached_part"] = error.reached_part;
         group["missed_rms"] = error.missed_rms;
         group["missed_max"] = error.missed_max;
         group["missed_at"] = std::array{error.missed_at.x, error.missed_at.y, error.missed_at.z};

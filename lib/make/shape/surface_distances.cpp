@@ -33,6 +33,16 @@ std::vector<std::array<std::uint8_t, 3>> open_sides_of(const Surface& surface) {
     return open;
 }
 
+/// The mean side of the level before that of a boundary, whose quads are two triangles each.
+double side_before(const Surface& boundary) {
+    double length = 0;
+    for (const auto& t : boundary.triangles) {
+        const Vec3 &a = boundary.points[t[0]], &b = boundary.points[t[1]], &c = boundary.points[t[2]];
+        length += std::min({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    }
+    return length * 2 / static_cast<double>(boundary.triangles.size());
+}
+
 }  // namespace
 
 std::vector<SurfaceSample> samples_on(const Surface& surface, std::size_t count) {
@@ -80,7 +90,7 @@ std::vector<Pull> SurfaceDistances::pulls(const Surface& boundary, double weight
     const SurfaceTree boundary_tree(boundary);
     double length = 0;
     for (const auto& t : boundary.triangles) length += glm::distance(boundary.points[t[0]], boundary.points[t[1]]);
-    length *= 2 / static_cast<double>(boundary.triangles.size());  // of a side of the level before
+    length *= 2 / static_cast<double>(boundary.triangles.size());  // of a side of the level before, or a fifth more
     const std::size_t first = boundary.points.size(), count = first + places_.size();
     const auto weight_at = [&](double distance) {
         return weight / static_cast<double>(count) / (1 + distance * distance / (length * length));
@@ -106,6 +116,7 @@ void SurfaceDistances::add_errors(const Surface& boundary, DistanceSums& sums) c
     const std::size_t first = boundary.points.size();
     const auto over_hole = [&](std::size_t k) { return k < first && found[k].weight == 0; };
     ShapeError& error = sums.error;
+    const double near = side_before(boundary);
     for (std::size_t k = 0; k < found.size(); ++k) {
         const double distance = found[k].distance;
         if (k < first && !over_hole(k)) {
@@ -114,6 +125,7 @@ void SurfaceDistances::add_errors(const Surface& boundary, DistanceSums& sums) c
             error.covered_max = std::max(error.covered_max, distance);
         }
         const bool missed = k >= first;
+        if (missed && distance < near) ++sums.reached;
         (missed ? error.missed_rms : error.rms) += distance * distance;
         double& most = missed ? error.missed_max : error.max;
         Vec3& at = missed ? error.missed_at : error.max_at;
@@ -145,6 +157,7 @@ ShapeError DistanceSums::result() const {
     made.rms = root(error.rms, points);
     made.covered_rms = root(error.covered_rms, covered);
     made.missed_rms = root(error.missed_rms, places);
+    made.reached_part = places > 0 ? static_cast<double>(reached) / static_cast<double>(places) : 1;
     made.hole_part = area > 0 ? error.hole_part / area : 0;
     return made;
 }

@@ -40,7 +40,7 @@ struct SurfaceSample {
 /// Sums of distances and their squares.
 struct DistanceSums {
     ShapeError error;  ///< squares instead of roots, and areas instead of parts
-    std::size_t points = 0, covered = 0, places = 0;
+    std::size_t points = 0, covered = 0, places = 0, reached = 0;
     double area = 0;
 
     /// The roots of means.

@@ -49,6 +49,8 @@ std::vector<double> sides_of(const LayeredMesh& mesh, std::span<const double> si
 /// What is known of sharp edges.
 SharpEdgeReport report_of(const SharpEdges& sharp, const SharpPaths& paths, const std::array<double, 2>& error) {
     SharpEdgeReport report;
+    report.corners = sharp.corners.size();
+    report.missed_corners = sharp.corners.size() - paths.corners.size();
     report.curves = sharp.curves.size();
     report.missed = paths.missed.size();
     for (const SharpCurve& curve : sharp.curves) report.length_world += curve.length();

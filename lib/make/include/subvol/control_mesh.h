@@ -31,6 +31,8 @@ struct ControlMeshOptions {
 
 /// The sharp edges of a surface, as chains, and the creases of a mesh that follow them.
 struct SharpEdgeReport {
+    std::size_t corners = 0;         ///< where chains meet, end or turn sharply
+    std::size_t missed_corners = 0;  ///< those at which no crease ends or turns
     std::size_t curves = 0;
     std::size_t missed = 0;  ///< chains without creases, as others are too near or the mesh does not reach them
     double length_world = 0, missed_length_world = 0;

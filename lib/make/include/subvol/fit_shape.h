@@ -41,6 +41,7 @@ struct ShapeError {
     double rms = 0, max = 0;                  ///< from places of the boundary to the surface
     double covered_rms = 0, covered_max = 0;  ///< the same without places over a hole, to whose edge they are nearest
     double hole_part = 0;                     ///< the part of the boundary's area that is over holes
+    double reached_part = 1;                  ///< of the surface's area: nearer to the boundary than half a side of its cells
     double missed_rms = 0, missed_max = 0;  ///< from places of the surface to the boundary: large where the mesh does not reach
     Vec3 max_at{std::numeric_limits<double>::quiet_NaN()};  ///< the place of the boundary that is farthest from the surface
     Vec3 missed_at{max_at};                                 ///< the place of the surface that is farthest from the boundary

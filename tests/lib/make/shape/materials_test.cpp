@@ -162,6 +162,19 @@ TEST(ControlMesh, WallsWithinAUnionDrawNothing) {
     EXPECT_NEAR(test::volume_of(refine(knob.mesh, {.levels = 2})), 1.25, 0.005);
 }
 
+TEST(ControlMesh, SaysWhichPartOfTheSurfaceItReaches) {
+    const ControlMesh cube = control_mesh_of(box({0, 0, 0}, {1, 1, 1}), {.cells = 5});
+    EXPECT_EQ(cube.report.sharp.corners, 8U);
+    EXPECT_EQ(cube.report.sharp.missed_corners, 0U);
+    EXPECT_EQ(cube.report.shape.after.reached_part, 1);
+    // A cube of cells with the side .25, and a plate beside it that it does not have: only what is nearer than .125 is reached.
+    HexMesh cells = test::make_box(4, 4, 4);
+    for (Vec3& x : cells.points) x *= 0.25;
+    const Surface plate = box({1, .3, .61}, {1.5, .7, .62}, 40);
+    const double area = 2 * (.4 + .01) * .5 + 2 * .4 * .01, reached = 2 * (.4 + .01) * .125 + .4 * .01;
+    EXPECT_NEAR(shape_error(cells, plate, {.kind = Scheme::Linear}).reached_part, reached / area, 0.01);
+}
+
 TEST(ControlMesh, SidesOverHolesAreThePatchLid) {
     Surface ball = test::sphere(24);
     EXPECT_TRUE(control_mesh_of(ball, {.cells = 8}).sets.empty());
