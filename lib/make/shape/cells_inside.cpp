@@ -109,6 +109,7 @@ std::vector<Index> CellsInside::materials_of(const SizedMesh& all, std::size_t& 
             likenesses[m][c] = bodies_[m].likeness(middle);
             if (likenesses[m][c] > kHalf) materials[c] = m;
         }
+        if (materials[c] == kNone && kinds > 1) materials[c] = bodies_.beside_gap(middle);
     });
     if (is_cancelled(options_.progress)) throw Error(ErrorCode::Cancelled, "stopped in shape");
     added = 0;

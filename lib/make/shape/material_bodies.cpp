@@ -14,6 +14,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr float kWithin = 0.5F;
+constexpr double kTouching = 0.05;  // sides: how near surfaces are that touch
 
 double distance_from(const SharpCurve& curve, const Vec3& x) {
     return glm::distance(CurveTree(curve).nearest(x).point, x);
@@ -96,6 +97,16 @@ Index MaterialBodies::at(const Vec3& x) const {
     return kNone;
 }
 
+Index MaterialBodies::beside_gap(const Vec3& x) const {
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 step(0.0);
+        step[axis] = kTouching * side_;
+        const Index before = at(x - step), behind = at(x + step);
+        if (before != kNone && behind != kNone) return std::min(before, behind);
+    }
+    return kNone;
+}
+
 float MaterialBodies::likeness(const Vec3& x) const {
     float most = 0;
     for (const SurfaceBodies& body : bodies_) most = std::max(most, body.likeness(x));
@@ -106,8 +117,7 @@ WallTarget MaterialBodies::target(Index material) const {
     WallTarget target{&bodies_[material].surface()};
     if (bodies_.size() > 1 || bodies_[material].has_several_walls()) {
         target.reaches = [this, material](const Vec3& place, const Vec3& normal) {
-            constexpr double kBeside = 1e-3;  // sides
-            const Index below = at(place - kBeside * side_ * normal), above = at(place + kBeside * side_ * normal);
+            const Index below = at(place - kTouching * side_ * normal), above = at(place + kTouching * side_ * normal);
             return below != above && std::min(below, above) == material;
         };
     }
@@ -116,11 +126,10 @@ WallTarget MaterialBodies::target(Index material) const {
 
 MaterialBodies::Relation MaterialBodies::relation(Index smaller, Index larger) const {
     constexpr std::size_t kSamples = 1000;
-    constexpr double kBeside = 1e-3;  // sides
     std::size_t inside = 0, all = 0;
     for (const SurfaceSample& sample : samples_on(bodies_[smaller].surface(), kSamples)) {
-        const Vec3 below = sample.place - kBeside * side_ * sample.normal,
-                   above = sample.place + kBeside * side_ * sample.normal;
+        const Vec3 below = sample.place - kTouching * side_ * sample.normal,
+                   above = sample.place + kTouching * side_ * sample.normal;
         const bool in_below = bodies_[smaller].likeness(below) > kWithin, in_above = bodies_[smaller].likeness(above) > kWithin;
         if (in_below == in_above) continue;  // no wall
         ++all;

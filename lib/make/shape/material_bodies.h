@@ -15,10 +15,10 @@ namespace subvol::detail {
 
 /// What several surfaces enclose, each a material of its own. A place in more than one has the material of the one that
 /// encloses least, so that a body within another is cut out of it. Materials are numbered by what they enclose, the least
-/// first.
+/// first. Surfaces that are nearer to each other than a twentieth of a cell touch, as two programs' triangles for one face do.
 class MaterialBodies {
 public:
-    /// side: of a cell: places nearer to each other than a thousandth of it are one
+    /// side: of a cell
     MaterialBodies(std::span<const MaterialSurface> surfaces, double side);
 
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
@@ -30,6 +30,8 @@ public:
 
     /// The material of a place; kNone outside of all.
     [[nodiscard]] Index at(const Vec3& x) const;
+    /// The material beside a place between two that touch; kNone elsewhere.
+    [[nodiscard]] Index beside_gap(const Vec3& x) const;
     /// The largest likeness of a material.
     [[nodiscard]] float likeness(const Vec3& x) const;
 

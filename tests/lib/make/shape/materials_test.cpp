@@ -128,6 +128,29 @@ TEST(Materials, WhatTwoBodiesShareIsOfTheSmallerOne) {
     EXPECT_LT(made.report.shape.after.rms, 0.05 * made.report.side_world);
 }
 
+TEST(Materials, SurfacesOfOneFaceWithOtherTrianglesTouch) {
+    // A face that is wavy, by 12 × 12 squares of one body and 13 × 13 of the other: gaps and overlaps of a hundredth of a cell.
+    const auto wave = [](const Vec3& x) { return 0.15 * std::sin(2 * x.x) * std::cos(1.5 * x.y); };
+    const auto layer = [&](int cells, double sign) {
+        return test::moved_box(cells, [&](const Vec3& x) {
+            const double part = 0.5 * (1 + sign * x.z), low = wave(x);  // 0 at the wavy face
+            return Vec3(x.x, x.y, low + part * (sign - low));
+        });
+    };
+    const std::vector<MaterialSurface> given{{"lower", layer(12, -1)}, {"upper", layer(13, 1)}};
+    const ControlMesh made = control_mesh_of(given, {.cells = 9});
+    EXPECT_EQ(made.report.parts, 1U);
+    EXPECT_TRUE(made.report.shape.is_sound());
+    EXPECT_TRUE(made.report.shape.warnings.empty()) << made.report.shape.warnings.front();
+    EXPECT_LT(made.report.shape.after.max, 0.05 * made.report.side_world);
+    EXPECT_LT(made.report.shape.after.missed_max, 0.05 * made.report.side_world);
+    // The wave has as much above as below.
+    EXPECT_NEAR(volume_of_set(made, "lower"), 4, 0.01);
+    EXPECT_NEAR(volume_of_set(made, "upper"), 4, 0.01);
+    for (const Vec3& x : places_between(made)) EXPECT_NEAR(x.z, wave(x), 0.01);
+    EXPECT_NEAR(enclosed_volume(boundary_surface(made.mesh)), 8, 0.01);
+}
+
 TEST(Materials, BadOnesAreRefused) {
     const Surface ball = test::sphere(8);
     EXPECT_THAT(error_of([&] {
