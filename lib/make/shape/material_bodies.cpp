@@ -76,14 +76,14 @@ MaterialBodies::MaterialBodies(std::span<const MaterialSurface> surfaces, double
     std::ranges::stable_sort(order_, {}, [&](std::size_t s) { return volumes[s]; });
     for (const std::size_t s : order_) {
         bodies_.emplace_back(surfaces[s].surface);
+        boxes_.push_back(bounds(bodies_.back().surface()));
         names_.push_back(surfaces[s].name);
     }
 }
 
 Box MaterialBodies::box() const {
     Box box;
-    for (const SurfaceBodies& body : bodies_) {
-        const Box own = bounds(body.surface());
+    for (const Box& own : boxes_) {
         box.add(own.lower);
         box.add(own.upper);
     }
@@ -91,8 +91,11 @@ Box MaterialBodies::box() const {
 }
 
 Index MaterialBodies::at(const Vec3& x) const {
+    Box place;
+    place.add(x);
     for (Index m = 0; m < bodies_.size(); ++m) {
-        if (bodies_[m].likeness(x) > kWithin) return m;
+        // Nothing winds about a place outside of the box by a half.
+        if (meet(boxes_[m], place) && bodies_[m].likeness(x) > kWithin) return m;
     }
     return kNone;
 }

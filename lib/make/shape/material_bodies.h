@@ -50,6 +50,7 @@ public:
 
 private:
     std::deque<SurfaceBodies> bodies_;  // the trees in them refer to their walls
+    std::vector<Box> boxes_;
     std::vector<std::size_t> order_;
     std::vector<std::string> names_;
     double side_;
