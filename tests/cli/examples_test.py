@@ -93,8 +93,8 @@ class Files:
         else:
             self.command("subdivide", "made.vtk", "-o", name, "--levels", 0)
 
-    def surface(self, name):
-        self.command("surface", "model:ball:2", "-o", name, "--boundary")
+    def surface(self, name, *words):
+        self.command("surface", "model:ball:2", "-o", name, "--boundary", *words)
 
     def series(self, pattern, count=3):
         for k in range(1, count + 1):
@@ -131,6 +131,8 @@ def approximate(files):
     files.surface("scan.stl")
     files.surface("statue.stl")
     files.surface("statue.obj")
+    files.surface("skin.stl")
+    files.surface("bone.stl", "--warp", "vector(-.6*x,-.6*y,-.6*z)")
     files.fog("smoke.vdb")
     files.case(files.folder)
     (files.folder / "case.foam").touch()
@@ -141,6 +143,8 @@ def approximate(files):
 
 
 def cookbook(files):
+    files.surface("nut.stl")
+    files.surface("bolt.stl", "--warp", "vector(-.6*x,-.6*y,-.6*z)")
     files.mesh("fire.vtu", fields={"soot": lambda x, y, z: .01 + .01 * x, "Temp": FIELDS["Temp"], "V": FIELDS["V"]}, high=(60, 60, 60))
     files.series("run_####.vtu")
     files.pvd("run.pvd")
