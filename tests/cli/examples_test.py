@@ -132,7 +132,7 @@ def approximate(files):
     files.surface("statue.stl")
     files.surface("statue.obj")
     files.surface("skin.stl")
-    files.surface("bone.stl", "--warp", "vector(-.6*x,-.6*y,-.6*z)")
+    files.surface("bone.stl", "--warp", "vector(-.4*x,-.4*y,-.4*z)")
     files.fog("smoke.vdb")
     files.case(files.folder)
     (files.folder / "case.foam").touch()
@@ -144,7 +144,7 @@ def approximate(files):
 
 def cookbook(files):
     files.surface("nut.stl")
-    files.surface("bolt.stl", "--warp", "vector(-.6*x,-.6*y,-.6*z)")
+    files.surface("bolt.stl", "--warp", "vector(-.4*x,-.4*y,-.4*z)")
     files.mesh("fire.vtu", fields={"soot": lambda x, y, z: .01 + .01 * x, "Temp": FIELDS["Temp"], "V": FIELDS["V"]}, high=(60, 60, 60))
     files.series("run_####.vtu")
     files.pvd("run.pvd")

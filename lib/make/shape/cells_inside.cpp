@@ -89,7 +89,7 @@ SizedMesh CellsInside::cells(std::size_t& added) const {
         if (std::ranges::count(made.materials, m) > 0) continue;
         throw Error(ErrorCode::InvalidInput,
                     "no cell has its middle inside the part of the surface that no smaller one encloses", bodies_.name(m),
-                    "a body of its own, and more cells if it is thin");
+                    "a body of its own, and more cells if it is small or thin");
     }
     made.mesh.points = std::move(all.mesh.points);
     made.mesh = without_unused_points(std::move(made.mesh));
