@@ -9,7 +9,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PLACES = ["subvol/bin/subvol", "../bin/subvol", "../../../bin/subvol"]  # of a wheel, of the build folder, of Debian's packages
 
 
-def main():
+def main() -> None:
     program = next((path for path in (os.path.join(HERE, place) for place in PLACES) if os.path.isfile(path)), None)
     if program is None:
         sys.exit(_lacking("the command is not installed: Debian has it in the package subvol"))
@@ -21,6 +21,6 @@ def main():
         sys.exit(_lacking(f"{program} cannot be run: {error.strerror}"))
 
 
-def _lacking(what):
+def _lacking(what: str) -> int:
     print(f"subvol: {what}", file=sys.stderr)
     return 3
