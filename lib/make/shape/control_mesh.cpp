@@ -50,6 +50,9 @@ void check_names(std::span<const MaterialSurface> materials) {
     std::vector<std::string> names;
     for (const MaterialSurface& material : materials) names.push_back(material.name);
     std::ranges::sort(names);
+    if (names.size() > 1 && names.front().empty()) {
+        throw Error(ErrorCode::InvalidInput, "a material has no name", "materials", "a name of its own for each");
+    }
     const auto twice = std::ranges::adjacent_find(names);
     if (twice == names.end()) return;
     throw Error(ErrorCode::InvalidInput, "two materials have this name", *twice, "a name of its own for each");

@@ -72,11 +72,16 @@ void join(SharpEdges& sharp, SharpEdges more, double same) {
 MaterialBodies::MaterialBodies(std::span<const MaterialSurface> surfaces, double side) : order_(surfaces.size()), side_(side) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::vector<double> volumes;
-    for (const MaterialSurface& given : surfaces) volumes.push_back(std::abs(enclosed_volume(given.surface)));
+    for (const MaterialSurface& given : surfaces) {
+        // Of the bodies, whose triangles are turned as those around them: what they enclose is not that of the triangles as
+        // given.
+        const SurfaceBodies& body = given_.emplace_back(given.surface);
+        volumes.push_back(body.is_open() ? std::abs(enclosed_volume(body.surface())) : body.least_volume());
+    }
     std::ranges::stable_sort(order_, {}, [&](std::size_t s) { return volumes[s]; });
     for (const std::size_t s : order_) {
-        bodies_.emplace_back(surfaces[s].surface);
-        boxes_.push_back(bounds(bodies_.back().surface()));
+        bodies_.push_back(&given_[s]);
+        boxes_.push_back(bounds(given_[s].surface()));
         names_.push_back(surfaces[s].name);
     }
 }
@@ -95,7 +100,7 @@ Index MaterialBodies::at(const Vec3& x) const {
     place.add(x);
     for (Index m = 0; m < bodies_.size(); ++m) {
         // Nothing winds about a place outside of the box by a half.
-        if (meet(boxes_[m], place) && bodies_[m].likeness(x) > kWithin) return m;
+        if (meet(boxes_[m], place) && bodies_[m]->likeness(x) > kWithin) return m;
     }
     return kNone;
 }
@@ -112,13 +117,13 @@ Index MaterialBodies::beside_gap(const Vec3& x) const {
 
 float MaterialBodies::likeness(const Vec3& x) const {
     float most = 0;
-    for (const SurfaceBodies& body : bodies_) most = std::max(most, body.likeness(x));
+    for (const SurfaceBodies* body : bodies_) most = std::max(most, body->likeness(x));
     return most;
 }
 
 WallTarget MaterialBodies::target(Index material) const {
-    WallTarget target{&bodies_[material].surface()};
-    if (bodies_.size() > 1 || bodies_[material].has_several_walls()) {
+    WallTarget target{&bodies_[material]->surface()};
+    if (bodies_.size() > 1 || bodies_[material]->has_several_walls()) {
         target.reaches = [this, material](const Vec3& place, const Vec3& normal) {
             const Index below = at(place - kTouching * side_ * normal), above = at(place + kTouching * side_ * normal);
             return below != above && std::min(below, above) == material;
@@ -128,15 +133,17 @@ WallTarget MaterialBodies::target(Index material) const {
 }
 
 MaterialBodies::Relation MaterialBodies::relation(Index smaller, Index larger) const {
+    if (!meet(boxes_[smaller], boxes_[larger])) return Relation::Apart;
     constexpr std::size_t kSamples = 1000;
     std::size_t inside = 0, all = 0;
-    for (const SurfaceSample& sample : samples_on(bodies_[smaller].surface(), kSamples)) {
+    for (const SurfaceSample& sample : samples_on(bodies_[smaller]->surface(), kSamples)) {
         const Vec3 below = sample.place - kTouching * side_ * sample.normal,
                    above = sample.place + kTouching * side_ * sample.normal;
-        const bool in_below = bodies_[smaller].likeness(below) > kWithin, in_above = bodies_[smaller].likeness(above) > kWithin;
+        const bool in_below = bodies_[smaller]->likeness(below) > kWithin,
+                   in_above = bodies_[smaller]->likeness(above) > kWithin;
         if (in_below == in_above) continue;  // no wall
         ++all;
-        inside += bodies_[larger].likeness(in_below ? below : above) > kWithin ? 1 : 0;
+        inside += bodies_[larger]->likeness(in_below ? below : above) > kWithin ? 1 : 0;
     }
     if (inside == 0) return Relation::Apart;
     return inside == all ? Relation::Within : Relation::Crossing;
@@ -146,7 +153,7 @@ std::vector<std::optional<double>> MaterialBodies::volumes() const {
     const auto count = static_cast<Index>(bodies_.size());
     std::vector<std::optional<double>> volumes;
     for (Index m = 0; m < count; ++m) {
-        volumes.push_back(bodies_[m].volume());
+        volumes.push_back(bodies_[m]->volume());
         std::vector<Index> within;
         for (Index j = 0; j < m; ++j) {
             const Relation here = relation(j, m);
@@ -157,7 +164,7 @@ std::vector<std::optional<double>> MaterialBodies::volumes() const {
         for (const Index j : within) {
             const bool deeper =
                 std::ranges::any_of(within, [&](Index k) { return k > j && relation(j, k) == Relation::Within; });
-            const std::optional<double> volume = bodies_[j].volume();
+            const std::optional<double> volume = bodies_[j]->volume();
             if (deeper || !volumes[m]) continue;
             volumes[m] = volume ? std::optional(*volumes[m] - *volume) : std::nullopt;
         }

@@ -22,7 +22,7 @@ public:
     MaterialBodies(std::span<const MaterialSurface> surfaces, double side);
 
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
-    [[nodiscard]] const SurfaceBodies& operator[](Index material) const { return bodies_[material]; }
+    [[nodiscard]] const SurfaceBodies& operator[](Index material) const { return *bodies_[material]; }
     /// The number of the surface that a material is made of.
     [[nodiscard]] std::size_t given(Index material) const { return order_[material]; }
     [[nodiscard]] const std::string& name(Index material) const { return names_[material]; }
@@ -49,7 +49,8 @@ public:
     [[nodiscard]] SharpEdges sharp_edges(double angle_deg) const;
 
 private:
-    std::deque<SurfaceBodies> bodies_;  // the trees in them refer to their walls
+    std::deque<SurfaceBodies> given_;  // in the order of the surfaces; the trees in them refer to their walls
+    std::vector<const SurfaceBodies*> bodies_;
     std::vector<Box> boxes_;
     std::vector<std::size_t> order_;
     std::vector<std::string> names_;

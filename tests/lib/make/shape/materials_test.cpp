@@ -91,6 +91,19 @@ TEST(Materials, ABodyWithinAnotherIsCutOutOfItWhateverTheirOrder) {
     EXPECT_EQ(control_mesh_of(given, {.cells = 8}).mesh.points, made.mesh.points);
 }
 
+TEST(Materials, TurnedTrianglesDoNotMakeABodySmaller) {
+    // With two of five triangles turned, the sum of the triangles' volumes is a fifth of what they enclose.
+    std::vector<MaterialSurface> given{{"whole", test::sphere(16)}, {"core", test::sphere(12, 0.6)}};
+    for (std::size_t t = 0; t < given[0].surface.triangles.size(); ++t) {
+        if (t % 5 < 2) std::swap(given[0].surface.triangles[t][1], given[0].surface.triangles[t][2]);
+    }
+    ASSERT_LT(std::abs(enclosed_volume(given[0].surface)), enclosed_volume(given[1].surface));
+    const ControlMesh made = control_mesh_of(given, {.cells = 10, .folds = {.keep = true}});
+    EXPECT_NEAR(volume_of_set(made, "core"), kBall * std::pow(0.6, 3), 0.05);
+    EXPECT_NEAR(volume_of_set(made, "whole"), kBall * (1 - std::pow(0.6, 3)), 0.1);
+    EXPECT_THAT(made.report.shape.warnings, testing::Contains(HasSubstr("whole: ")));
+}
+
 TEST(Materials, BodiesThatTouchInAFaceShareIt) {
     const std::vector<MaterialSurface> given{{"left", box({0, 0, 0}, {1, 1, 1})}, {"right", box({1, 0, 0}, {2.5, 1, 1})}};
     const ControlMesh made = control_mesh_of(given, {.cells = 10});
@@ -163,6 +176,10 @@ TEST(Materials, BadOnesAreRefused) {
                 HasSubstr("b: no cell has its middle inside the part of the surface that no smaller one encloses"));
     EXPECT_THAT(error_of([&] { std::ignore = control_mesh_of(std::vector<MaterialSurface>{}, {.cells = 8}); }),
                 HasSubstr("there is no surface"));
+    EXPECT_THAT(error_of([&] {
+                    std::ignore = control_mesh_of(std::vector<MaterialSurface>{{"", ball}, {"b", ball}}, {.cells = 8});
+                }),
+                HasSubstr("a material has no name"));
 }
 
 TEST(ControlMesh, WallsWithinAUnionDrawNothing) {
