@@ -73,8 +73,8 @@ std::vector<CellSide> lids_of(const std::vector<FineWalls>& fine, const WallTarg
             const Vec3& a = own.points[corners[0]];
             const double area = glm::length(glm::cross(own.points[corners[1]] - a, own.points[corners[2]] - a));
             const auto count = std::ranges::count_if(corners, [&](Index p) { return over[p] != 0; });
-            constexpr double kHalf = 1.5;  // of three corners
-            parts.emplace_back(fine[m].sides[t / 2], (static_cast<double>(count) - kHalf) * area);
+            constexpr double kHalfOfCorners = 1.5;
+            parts.emplace_back(fine[m].sides[t / 2], (static_cast<double>(count) - kHalfOfCorners) * area);
         }
     }
     const auto key = [](const auto& part) { return std::pair(part.first.cell, part.first.side); };

@@ -60,10 +60,10 @@ ThinParts thin_parts(const SurfaceBodies& bodies, double far) {
     parallel_each(samples.size(), [&](std::size_t k) {
         Sample& sample = samples[k];
         constexpr double kBeside = 1e-3;  // of `far`
-        constexpr float kInside = 0.5F;
+        constexpr float kEnclosed = 0.5F;
         const Vec3 step = kBeside * far * sample.normal;
-        const bool below = bodies.likeness(sample.place - step) > kInside,
-                   above = bodies.likeness(sample.place + step) > kInside;
+        const bool below = bodies.likeness(sample.place - step) > kEnclosed,
+                   above = bodies.likeness(sample.place + step) > kEnclosed;
         if (below == above) return;
         const Vec3 inwards = below ? -sample.normal : sample.normal;
         // From beside the sample's own triangle on, so that it is not met.
