@@ -24,18 +24,16 @@
 #include "options.h"
 #include "outputs.h"
 #include "picture_arguments.h"
-#include "picture_notes.h"
 #include "places_input.h"
 #include "refine_arguments.h"
+#include "slice_picture.h"
 #include "subvol/color_name.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
-#include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
 #include "subvol/measure.h"
 #include "subvol/option.h"
-#include "subvol/overlay.h"
 #include "subvol/picture_look.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -66,13 +64,15 @@ public:
               "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
               "\n"
               "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
-              "value, with a legend. .exr: the same in linear light, without one. .csv: a row for each place inside. .vtp: "
+              "value, with a legend. .svg, .pdf: the same with lines and letters as shapes. .exr: in linear light, without a "
+              "legend. .csv: a row for each place inside. .vtp: "
               "squares, and the contour lines. JSON: plane, width, height, step, inside, contours, area, mean, min, min_at, "
               "max, "
               "max_at of the limit on the plane, and file_area, file_mean, file_min, file_min_at, file_max, file_max_at of the "
               "cells as the file has them.") {
         add_input(app(), "FILE", input_, input_help())->required();
-        add_option(app(), Option("output", output_).also("o").help("FILE", "the file to write (.png, .exr, .vtp, .csv)"))
+        add_option(app(),
+                   Option("output", output_).also("o").help("FILE", "the file to write (.png, .svg, .pdf, .exr, .vtp, .csv)"))
             ->required();
         add_option(app(),
                    Option("plane", plane_)
@@ -105,7 +105,7 @@ public:
             if (std::ranges::find(kShape, option.name) != kShape.end()) add_option(app(), option);
         }
         add_option(app(), Option("title", title_).help("TEXT", "a line of text above the picture"));
-        add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, of a .png"));
+        add_option(app(), Option("background", background_).help("COLOR", "the colour outside the volume, but of an .exr"));
         add_option(app(), Option("no-legend", no_legend_).help("the picture alone"));
         add_option(app(), Option("unit", unit_).help("TEXT", "of the field, for the legend").instead_of({"no-legend"}));
         scheme_.add_scheme_to(app());
@@ -113,7 +113,7 @@ public:
     }
 
     int run(Report& report) override {
-        check_output(output_, {".png", ".exr", ".vtp", ".csv"});
+        check_output(output_, {".png", ".svg", ".pdf", ".exr", ".vtp", ".csv"});
         const Vec3 background = parse_color(background_, "--background");
         check_notes();
         (void)contour_values({.min = 0, .max = 1});
@@ -130,8 +130,7 @@ public:
         if (output_.ends_with(".vtp") || output_.ends_with(".csv")) {
             write_slice(output_, slice, lines);
         } else {
-            const Range whole{.min = slice.min, .max = slice.max};
-            write_picture(slice, lines, range_ ? parse_range(*range_, whole, "--range") : whole, plane, background, report);
+            write_slice_picture(output_, slice, lines, picture_of(slice, plane, background), report);
         }
         report["output"] = output_;
         report["plane"] = plane;
@@ -215,70 +214,26 @@ private:
         return slice;
     }
 
-    void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
-                       const std::vector<double>& plane, const Vec3& background, Report& report) const {
+    [[nodiscard]] SlicePicture picture_of(const LimitSlice& slice, const std::vector<double>& plane,
+                                          const Vec3& background) const {
+        const ValueRange whole{.min = slice.min, .max = slice.max};
+        const ValueRange range = range_ ? parse_range(*range_, whole, "--range") : whole;
         const ColorShape shape = color_shape(choices_, OptionNames::Flags);
-        TransferFunction function = shaped(find_transfer_function(function_, range), shape);
-        function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
-        const bool png = output_.ends_with(".png");
-        const LegendOptions legend{.title = legend_title(slice.field, unit_.empty() ? known_unit_ : unit_),
-                                   .min = range.min,
-                                   .max = range.max,
-                                   .shape = shape};
-        const bool dark_paper = glm::dot(background, Vec3(.2126, .7152, .0722)) < 0.18;
-        const Vec3 ink(dark_paper ? 1.0 : 0.0);
-        const Vec3 point(plane[0], plane[1], plane[2]);
-        const PictureScale across = scale_of(slice.right, slice.place(-0.5, 0), slice.width, point, "s");
-        const PictureScale up = scale_of(-slice.down, slice.place(0, slice.height - 0.5), slice.height, point, "t");
-        const PlotMargins margins_of_axes = axes_ ? plot_margins_px(slice.height, up) : PlotMargins{};
-        PlotMargins margins = margins_of_axes;
-        const double letter = std::clamp(slice.height / 40.0, 9.0, 60.0), title_letter = 1.4 * letter;
-        if (!title_.empty()) margins.top += static_cast<int>(std::ceil(1.8 * title_letter));
-        int extra = 0;
-        const int width = margins.left + slice.width + margins.right;
-        int height = slice.height + margins.top + margins.bottom;
-        if (png && !no_legend_) {
-            height = std::max(height, kLeastLegend_px);
-            extra = legend_extent_px(function, legend, {.width = width}, height);
+        SlicePicture picture{.function = shaped(find_transfer_function(function_, range), shape),
+                             .background = background,
+                             .title = title_,
+                             .axes = axes_,
+                             .extremes = extremes_,
+                             .contour_labels = contour_labels_,
+                             .point = {plane[0], plane[1], plane[2]}};
+        picture.function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
+        if (!no_legend_ && !output_.ends_with(".exr")) {
+            picture.legend = LegendOptions{.title = legend_title(slice.field, unit_.empty() ? known_unit_ : unit_),
+                                           .min = range.min,
+                                           .max = range.max,
+                                           .shape = shape};
         }
-        Facts facts;
-        warn_of_boxes(std::array{extra > 0 ? legend.title : std::string(), title_}, facts);
-        report.merge(facts);
-        const int left = margins.left;
-        Image image(width, height);
-        const int top = margins.top + (height - slice.height - margins.top - margins.bottom) / 2;
-        for (int row = 0; row < slice.height; ++row) {
-            for (int column = 0; column < slice.width; ++column) {
-                const auto p =
-                    static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.width) + static_cast<std::size_t>(column);
-                if (slice.cells[p] == kNone) continue;
-                const Vec3 rgb = color_at(function, slice.values[p]);
-                const auto pixel = image.pixel(left + column, row + top);
-                for (int k = 0; k < 3; ++k) pixel[static_cast<std::size_t>(k)] = static_cast<float>(rgb[k]);
-                pixel[3] = 1;
-            }
-        }
-        for (const ContourLine& line : lines) {
-            const Vec3 rgb = color_at(function, line.value);
-            const bool dark = glm::dot(rgb, Vec3(.2126, .7152, .0722)) < 0.18;
-            const Vec2 middle(0.5 + left, 0.5 + top);
-            for (std::size_t i = 1; i < line.places.size(); ++i) {
-                draw_line(image, line.places[i - 1] + middle, line.places[i] + middle,
-                          {.width_px = 1.25, .color = dark ? Vec3(1.0) : Vec3(0.0), .alpha = 0.75});
-            }
-        }
-        if (!title_.empty()) {
-            draw_text(image, {left + 0.2 * title_letter, top - margins_of_axes.top - 0.6 * title_letter},
-                      cut_text(title_, title_letter, slice.width + margins.right), {.size_px = title_letter, .color = ink});
-        }
-        if (contour_labels_) label_lines(image, lines, Vec2(0.5 + left, 0.5 + top), letter);
-        if (axes_) draw_scales(image, {left, top, slice.width, slice.height}, across, up, ink);
-        if (extremes_) mark_extremes(image, slice, Vec2(0.5 + left, 0.5 + top), letter, report);
-        if (extra > 0) {
-            image = padded(image, 0, 0, width + extra, height);
-            draw_legend(image, function, legend, {.ink = ink, .width = width}, height);
-        }
-        report.timed("write", [&] { write_image(output_, image, background); });
+        return picture;
     }
 
     /// The values of the lines for the range of a plane.
@@ -334,68 +289,15 @@ private:
     void check_notes() const {
         if (contour_labels_ && !contours_)
             throw Error(ErrorCode::InvalidInput, "has no lines to label", "--contour-labels", "--contours N");
-        if (output_.ends_with(".png") || output_.ends_with(".exr")) return;
+        if (!output_.ends_with(".vtp") && !output_.ends_with(".csv")) return;
         for (const auto& [given, name] : {std::pair{contour_labels_, "--contour-labels"},
                                           {axes_, "--axes"},
                                           {extremes_, "--extremes"},
                                           {!title_.empty(), "--title"}}) {
-            if (given) throw Error(ErrorCode::InvalidInput, "is drawn into pictures", name, "-o NAME.png or .exr");
+            if (given) throw Error(ErrorCode::InvalidInput, "is drawn into pictures", name, "-o NAME.png, .svg, .pdf or .exr");
         }
     }
 
-    /// The coordinate along a side of the picture. step: from a place to the next; first: the outer edge of the first place
-    [[nodiscard]] static PictureScale scale_of(const Vec3& step, const Vec3& first, int count, const Vec3& point,
-                                               const char* name) {
-        constexpr double kParallel = 1e-9;
-        const double length = glm::length(step);
-        const Vec3 along = step / length;
-        for (int k = 0; k < 3; ++k) {
-            if (std::abs(std::abs(along[k]) - 1) > kParallel) continue;
-            return {std::string(1, static_cast<char>('x' + k)), first[k], first[k] + count * step[k]};
-        }
-        const double from = glm::dot(along, first - point);
-        return {name, from, from + count * length};
-    }
-
-    /// Writes the value of each line at its middle, where the line is long enough and no label is near.
-    static void label_lines(Image& image, const std::vector<ContourLine>& lines, const Vec2& middle, double letter) {
-        std::vector<Vec2> taken;
-        for (const ContourLine& line : lines) {
-            const std::string label = detail::number_text(line.value, 4);
-            const double room = text_width_px(label, letter) + letter;
-            double length = 0;
-            for (std::size_t i = 1; i < line.places.size(); ++i) length += glm::length(line.places[i] - line.places[i - 1]);
-            if (length < 3 * room) continue;
-            double walked = 0;
-            for (std::size_t i = 1; i < line.places.size(); ++i) {
-                walked += glm::length(line.places[i] - line.places[i - 1]);
-                const Vec2 place = line.places[i] + middle;
-                if (walked < 0.5 * length) continue;
-                const bool free = std::ranges::none_of(taken, [&](const Vec2& other) {
-                    return std::abs(other.x - place.x) < room && std::abs(other.y - place.y) < 1.6 * letter;
-                });
-                if (!free) continue;
-                taken.push_back(place);
-                draw_label(image, place + Vec2(0, 0.35 * letter), label,
-                           {.size_px = letter, .color = Vec3(0.0), .anchor = TextAnchor::Middle}, Vec3(1.0));
-                break;
-            }
-        }
-    }
-
-    static void mark_extremes(Image& image, const LimitSlice& slice, const Vec2& middle, double letter, Report& report) {
-        const double step = glm::dot(slice.right, slice.right);
-        Json said;
-        for (const auto& [name, value, at] : {std::tuple{"min", slice.min, slice.min_at}, {"max", slice.max, slice.max_at}}) {
-            const Vec3 from = at - slice.origin;
-            const Vec2 place(glm::dot(from, slice.right) / step, glm::dot(from, slice.down) / step);
-            draw_mark(image, place + middle, text(name, " ", detail::number_text(value, 4)), letter, Vec3(0.0), Vec3(1.0));
-            said[text(name, "_at")] = {at.x, at.y, at.z};
-        }
-        report["extremes"] = std::move(said);
-    }
-
-    static constexpr int kLeastLegend_px = 200;
     std::string input_, output_, plane_, function_ = "viridis", background_ = "white", unit_, known_unit_;
     std::optional<std::string> range_;
     SliceFigures limit_figures_, file_;  // file_: of the cells as they were given

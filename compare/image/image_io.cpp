@@ -199,6 +199,10 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background)
     return bytes;
 }
 
+std::string png_bytes(const Image& image, const std::optional<Vec3>& background) {
+    return encoded_png(image.width, image.height, background ? srgb_bytes(image, *background) : srgba_bytes(image));
+}
+
 void write_image(const fs::path& path, const Image& image, const std::optional<Vec3>& background, std::span<const float> depth,
                  const std::string& camera) {
     const PixelWindow whole{0, 0, image.width, image.height};

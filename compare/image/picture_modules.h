@@ -87,6 +87,9 @@ struct OpenExr {
 /// the time of a first picture.
 ///
 /// bytes: three a pixel, or four with alpha, row by row from the top
+/// bytes: as of `write_png`
+[[nodiscard]] std::string encoded_png(int width, int height, std::span<const std::uint8_t> bytes);
+
 [[nodiscard]] std::optional<PictureFault> write_png(const std::string& path, int width, int height,
                                                     std::span<const std::uint8_t> bytes);
 

@@ -3,11 +3,19 @@
 #include <cairo-pdf.h>
 #include <cairo.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
+#include <memory>
 #include <numbers>
 #include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 
 #include "pdf_canvas.h"
+#include "subvol/srgb.h"
 #include "subvol/version.h"
 
 namespace subvol::detail {
@@ -17,23 +25,59 @@ namespace {
 constexpr const char* kFont = "DejaVu Sans";  // has Greek, superscripts and mathematical signs; another one if it is missing
 constexpr double kMarker = 3.4;
 
-class CairoPage : public PdfCanvas {
+/// A file with one page.
+class CairoFile {
 public:
-    CairoPage(const Vec2& size, double scale, const std::string& title)
-        : scale_(scale),
-          surface_(cairo_pdf_surface_create_for_stream(&append, &bytes_, size.x, size.y)),
-          cairo_(cairo_create(surface_)) {
+    /// size: of the page, in PostScript points
+    CairoFile(const Vec2& size, const std::string& title)
+        : surface_(cairo_pdf_surface_create_for_stream(&append, &bytes_, size.x, size.y)), cairo_(cairo_create(surface_)) {
         cairo_pdf_surface_restrict_to_version(surface_, CAIRO_PDF_VERSION_1_4);
         cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_TITLE, title.c_str());
         cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_CREATE_DATE, "");  // the same bytes in every run
         cairo_select_font_face(cairo_, kFont, CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     }
-    ~CairoPage() override {
+    ~CairoFile() {
         cairo_destroy(cairo_);
         cairo_surface_destroy(surface_);
     }
-    CairoPage(const CairoPage&) = delete;
-    CairoPage& operator=(const CairoPage&) = delete;
+    CairoFile(const CairoFile&) = delete;
+    CairoFile& operator=(const CairoFile&) = delete;
+
+    [[nodiscard]] cairo_t* cairo() const { return cairo_; }
+
+    /// Draws a text of the current font and colour. part: of its width that is before the place
+    void text(const Vec2& place, double part, const std::string& words) const {
+        cairo_text_extents_t extents{};
+        cairo_text_extents(cairo_, words.c_str(), &extents);
+        cairo_move_to(cairo_, place.x - part * extents.x_advance, place.y);
+        cairo_show_text(cairo_, words.c_str());
+        cairo_new_path(cairo_);  // it leaves a point, from which the next line would begin
+    }
+
+    /// As `PdfCanvas::file`.
+    [[nodiscard]] std::string bytes(std::string& fault) {
+        cairo_surface_finish(surface_);
+        for (const cairo_status_t status : {cairo_status(cairo_), cairo_surface_status(surface_)}) {
+            if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
+                fault = cairo_status_to_string(status);
+        }
+        return std::move(bytes_);
+    }
+
+private:
+    static cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
+        for (const unsigned char byte : std::span(bytes, count)) static_cast<std::string*>(to)->push_back(char(byte));
+        return CAIRO_STATUS_SUCCESS;
+    }
+
+    std::string bytes_;
+    cairo_surface_t* surface_;
+    cairo_t* cairo_;
+};
+
+class CairoPage : public PdfCanvas {
+public:
+    CairoPage(const Vec2& size, double scale, const std::string& title) : scale_(scale), file_(size, title) {}
 
     void grid(const Vec2& from, const Vec2& to) override {
         set_gray(0.886);
@@ -96,30 +140,13 @@ public:
         if (upward) cairo_rotate(cairo_, -std::numbers::pi / 2);
         cairo_set_source_rgb(cairo_, 0.11, 0.11, 0.11);
         cairo_set_font_size(cairo_, size);
-        cairo_text_extents_t extents{};
-        cairo_text_extents(cairo_, words.c_str(), &extents);
-        const double part = anchor == Anchor::Start ? 0 : anchor == Anchor::Middle ? 0.5 : 1;
-        cairo_move_to(cairo_, -part * extents.x_advance, 0);
-        cairo_show_text(cairo_, words.c_str());
-        cairo_new_path(cairo_);  // it leaves a point, from which the next line would begin
+        file_.text(Vec2(0), anchor == Anchor::Start ? 0 : anchor == Anchor::Middle ? 0.5 : 1, words);
         cairo_restore(cairo_);
     }
 
-    std::string file(std::string& fault) override {
-        cairo_surface_finish(surface_);
-        for (const cairo_status_t status : {cairo_status(cairo_), cairo_surface_status(surface_)}) {
-            if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
-                fault = cairo_status_to_string(status);
-        }
-        return std::move(bytes_);
-    }
+    std::string file(std::string& fault) override { return file_.bytes(fault); }
 
 private:
-    static cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
-        for (const unsigned char byte : std::span(bytes, count)) static_cast<std::string*>(to)->push_back(char(byte));
-        return CAIRO_STATUS_SUCCESS;
-    }
-
     void set_gray(double gray) {
         cairo_set_source_rgb(cairo_, gray, gray, gray);
         cairo_set_line_width(cairo_, scale_);
@@ -145,10 +172,86 @@ private:
     }
 
     double scale_;
-    std::string bytes_;
-    cairo_surface_t* surface_;
+    CairoFile file_;
+    cairo_t* cairo_ = file_.cairo();
+};
+
+/// Draws the shapes of a vector graphic.
+class GraphicShapes {
+public:
+    explicit GraphicShapes(CairoFile& file) : file_(file), cairo_(file.cairo()) {}
+
+    void operator()(const LineShape& line) const {
+        if (line.places.size() < 2) return;
+        set_color(line.options.color, line.options.alpha);
+        cairo_set_line_width(cairo_, line.options.width_px);
+        add_path(line.places);
+        cairo_stroke(cairo_);
+    }
+
+    void operator()(const AreaShape& area) const {
+        set_color(area.color, area.alpha);
+        add_path(area.corners);
+        cairo_close_path(cairo_);
+        cairo_fill(cairo_);
+    }
+
+    void operator()(const TextShape& shape) const {
+        const TextAnchor anchor = shape.options.anchor;
+        set_color(shape.options.color, 1);
+        cairo_set_font_size(cairo_, shape.options.size_px);
+        file_.text(shape.place, anchor == TextAnchor::Start ? 0 : anchor == TextAnchor::Middle ? 0.5 : 1, shape.text);
+    }
+
+    void operator()(const PictureShape& picture) const {
+        std::string_view rest = picture.png;
+        cairo_surface_t* const pixels = cairo_image_surface_create_from_png_stream(&take, &rest);
+        if (cairo_surface_status(pixels) == CAIRO_STATUS_SUCCESS) {
+            cairo_save(cairo_);
+            cairo_translate(cairo_, picture.corner.x, picture.corner.y);
+            cairo_scale(cairo_, picture.size.x / cairo_image_surface_get_width(pixels),
+                        picture.size.y / cairo_image_surface_get_height(pixels));
+            cairo_set_source_surface(cairo_, pixels, 0, 0);
+            cairo_paint(cairo_);
+            cairo_restore(cairo_);
+        }
+        cairo_surface_destroy(pixels);
+    }
+
+private:
+    static cairo_status_t take(void* from, unsigned char* bytes, unsigned count) {
+        auto& rest = *static_cast<std::string_view*>(from);
+        if (rest.size() < count) return CAIRO_STATUS_READ_ERROR;
+        std::memcpy(bytes, rest.data(), count);
+        rest.remove_prefix(count);
+        return CAIRO_STATUS_SUCCESS;
+    }
+
+    void set_color(const Vec3& linear, double alpha) const {
+        const auto coded = [&](int k) { return srgb_from_linear(std::clamp(linear[k], 0.0, 1.0)); };
+        cairo_set_source_rgba(cairo_, coded(0), coded(1), coded(2), alpha);
+    }
+
+    void add_path(std::span<const Vec2> places) const {
+        for (const Vec2& place : places) cairo_line_to(cairo_, place.x, place.y);
+    }
+
+    CairoFile& file_;
     cairo_t* cairo_;
 };
+
+std::string graphic_file(const VectorGraphic& graphic, const std::string& title, std::string& fault) {
+    constexpr double kPointsPerPixel = 0.75;  // 72 and 96 an inch
+    CairoFile file(kPointsPerPixel * Vec2(graphic.width, graphic.height), title);
+    cairo_scale(file.cairo(), kPointsPerPixel, kPointsPerPixel);
+    cairo_set_line_cap(file.cairo(), CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(file.cairo(), CAIRO_LINE_JOIN_ROUND);
+    const GraphicShapes shapes(file);
+    const Vec2 end(graphic.width, graphic.height);
+    shapes(AreaShape{{{0, 0}, {end.x, 0}, end, {0, end.y}}, graphic.background});
+    for (const auto& shape : graphic.shapes) std::visit(shapes, shape);
+    return file.bytes(fault);
+}
 
 }  // namespace
 
@@ -163,7 +266,8 @@ const subvol::detail::CairoFunctions* subvol_cairo() {
     static constexpr CairoFunctions kFunctions{
         [](const subvol::Vec2& size, double scale, const std::string& title) -> std::unique_ptr<PdfCanvas> {
             return std::make_unique<CairoPage>(size, scale, title);
-        }};
+        },
+        &graphic_file};
     return &kFunctions;
 }
 }

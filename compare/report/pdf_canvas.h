@@ -5,6 +5,7 @@
 #include <string>
 
 #include "canvas.h"
+#include "subvol/vector_graphic.h"
 
 namespace subvol::detail {
 
@@ -19,6 +20,14 @@ public:
 struct CairoFunctions {
     /// size: of the page, in PostScript points; scale: of lines and markers
     std::unique_ptr<PdfCanvas> (*page)(const Vec2& size, double scale, const std::string& title);
+    /// A vector graphic as the bytes of a whole file, as of `PdfCanvas::file`.
+    std::string (*graphic)(const VectorGraphic& graphic, const std::string& title, std::string& fault);
 };
+
+/// Loads the module that draws pages of PDF when it is called first.
+///
+/// purpose: what it is needed for
+/// throws:  Error(MissingCapability) if it is not there
+[[nodiscard]] const CairoFunctions& cairo(const std::string& purpose);
 
 }  // namespace subvol::detail

@@ -343,10 +343,8 @@ std::string plot_svg_file(const Plot& plot, const PlotSize& size) {
 }
 
 std::string plot_pdf(const Plot& plot, const PlotSize& size) {
-    using Entry = const CairoFunctions* (*)();
-    static const CairoFunctions& functions = *reinterpret_cast<Entry>(load_module("cairo", "drawing plots as .pdf"))();
     const Drawing drawing(plot, size);
-    const std::unique_ptr<PdfCanvas> page = functions.page(drawing.size(), drawing.scale(), plot.title);
+    const std::unique_ptr<PdfCanvas> page = cairo("drawing plots as .pdf").page(drawing.size(), drawing.scale(), plot.title);
     drawing.draw(*page);
     std::string fault, bytes = page->file(fault);
     if (!fault.empty()) throw Error(ErrorCode::InvalidInput, "the plot cannot be drawn: " + fault, plot.title);

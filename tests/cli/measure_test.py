@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """probe, slice and surface: their JSON, their files, what they refuse, and figures whose correct value is known."""
 
+import base64
 import csv
 import math
 import json
 import os
+import re
 import struct
 import unittest
 from pathlib import Path
+from xml.etree import ElementTree
 
 from command import TWO_FIELDS, InFolder, subvol
 
@@ -277,6 +280,38 @@ class Slice(Refusing):
         for wrong, naming in (["--contour-labels"], "--contours"), (["--axes", "-o", "a.csv"], "--axes"), (["--extremes", "-o", "a.vtp"], "--extremes"):
             done = subvol("slice", BOX, *([] if "-o" in wrong else ["-o", "a.png"]), *wrong, folder=self.folder)
             self.assertEqual((done.code, naming in done.err), (2, True), done.err)
+
+    def test_vector_graphics_have_lines_and_letters_as_shapes(self):
+        words = ["slice", "model:ball:4", "--resolution", 200, "--contours", "0.25,-0.5", "--contour-labels", "--density", "x", "--title", "A < B", "--json"]
+        made = self.run_ok(*words, "-o", "a.svg").json()
+        svg = ElementTree.parse(self.folder / "a.svg").getroot()
+        name = "{http://www.w3.org/2000/svg}"
+        image = svg.find(name + "image")
+        png = base64.b64decode(image.get("href").removeprefix("data:image/png;base64,"))
+        self.assertEqual(struct.unpack(">II", png[16:24]), (made["width"], made["height"]))
+        left, top = float(image.get("x")), float(image.get("y"))
+        # The lines x = .25 and x = -.5 of a ball about 0, whose picture is as wide on both sides, from rim to rim.
+        lines = {}
+        for path in svg.iter(name + "path"):
+            if path.get("stroke-opacity"):
+                places = [tuple(map(float, place.split())) for place in path.get("d")[1:].split("L")]
+                lines[round((places[0][0] - left - made["width"] / 2) * made["step"], 2)] = places
+        self.assertEqual(sorted(lines), [-.5, .25])
+        for x, places in lines.items():
+            self.assertLess(max(across for across, _ in places) - min(across for across, _ in places), .02)
+            length = (max(down for _, down in places) - min(down for _, down in places)) * made["step"]
+            self.assertAlmostEqual(length, 2 * math.sqrt(1 - x**2), delta=.05)
+            self.assertAlmostEqual(sum(down for _, down in places) / len(places) - top, made["height"] / 2, delta=1)
+        texts = [text.text for text in svg.iter(name + "text")]
+        for text in "A < B", "0.25", "-0.5", "density":
+            self.assertIn(text, texts)
+        # The page of the .pdf is as large, in points, and the same bytes in every run.
+        first = [self.run_ok(*words, "-o", "a.pdf") and (self.folder / "a.pdf").read_bytes() for _ in range(2)]
+        self.assertEqual(first[0], first[1])
+        box = re.search(rb"/MediaBox \[ 0 0 ([0-9.]+) ([0-9.]+) \]", first[0])
+        for points, pixels in zip(box.groups(), (svg.get("width"), svg.get("height"))):
+            self.assertAlmostEqual(float(points), .75 * float(pixels), delta=.01)
+        self.assertIn(b"DejaVuSans", first[0])
 
     def test_what_makes_no_sense_is_refused(self):
         for words, naming in [(["--plane", "0,0,0,0,0,0"], "direction"), (["--plane", "0,0,9,0,0,1"], "misses"),

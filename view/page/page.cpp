@@ -286,7 +286,7 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
         const Image& image = *options.reference;
         json["reference"] = {{"width", image.width},
                              {"height", image.height},
-                             {"png", base64(png_bytes(image.width, image.height, srgb_bytes(image, options.background)))}};
+                             {"png", base64(png_bytes(image, options.background))}};
     }
     return json;
 }

@@ -72,41 +72,4 @@ std::string deflated(std::string_view bytes) {
     return result;
 }
 
-namespace {
-
-void put_word(std::string& to, std::uint32_t word) {
-    for (int shift = 24; shift >= 0; shift -= 8) to.push_back(static_cast<char>(word >> shift & 255));
-}
-
-void put_chunk(std::string& to, const std::string& name, const std::string& content) {
-    put_word(to, static_cast<std::uint32_t>(content.size()));
-    const std::string checked = name + content;
-    to += checked;
-    const auto* bytes = reinterpret_cast<const Bytef*>(checked.data());
-    put_word(to, static_cast<std::uint32_t>(crc32(0, bytes, static_cast<uInt>(checked.size()))));
-}
-
-}  // namespace
-
-std::string png_bytes(int width, int height, std::span<const std::uint8_t> rgb) {
-    const std::size_t row = 3 * static_cast<std::size_t>(width);
-    std::string lines;
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
-        lines.push_back(1);  // each byte less the one of the pixel before
-        for (std::size_t x = 0; x < row; ++x) {
-            const int before = x < 3 ? 0 : rgb[y * row + x - 3];
-            lines.push_back(static_cast<char>(rgb[y * row + x] - before));
-        }
-    }
-    std::string head;
-    put_word(head, static_cast<std::uint32_t>(width));
-    put_word(head, static_cast<std::uint32_t>(height));
-    head += std::string("\x08\x02\0\0\0", 5);  // 8 bits, RGB
-    std::string png = "\x89PNG\r\n\x1a\n";
-    put_chunk(png, "IHDR", head);
-    put_chunk(png, "IDAT", deflated(lines));
-    put_chunk(png, "IEND", "");
-    return png;
-}
-
 }  // namespace subvol::detail

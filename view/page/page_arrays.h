@@ -39,7 +39,4 @@ private:
 /// Deflated bytes with zlib's header. throws: std::bad_alloc
 [[nodiscard]] std::string deflated(std::string_view bytes);
 
-/// A picture as a .png file's bytes. rgb: three bytes a pixel, rows from the top
-[[nodiscard]] std::string png_bytes(int width, int height, std::span<const std::uint8_t> rgb);
-
 }  // namespace subvol::detail

@@ -22,3 +22,4 @@
 #include "subvol/study_report.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
+#include "subvol/vector_graphic_file.h"

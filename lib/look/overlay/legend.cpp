@@ -29,7 +29,7 @@
 #include "subvol/detail/printable.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
-#include "subvol/srgb.h"
+#include "svg_parts.h"
 
 namespace subvol {
 
@@ -45,29 +45,6 @@ constexpr int kApart = 130;   // from the bar down to the plot of the opacities 
 constexpr int kColors = 128;  // along the bar, besides the knots
 constexpr const char* kInk = "#222";
 constexpr const char* kColorsUrl = "url(#colors)";
-
-std::string number(double x) {
-    std::array<char, 32> digits{};
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x, std::chars_format::fixed, 2).ptr};
-}
-
-std::string hex(const Vec3& linear) {
-    std::string text = "#";
-    for (const double c : {linear.x, linear.y, linear.z}) {
-        const auto byte = static_cast<std::size_t>(std::lround(255 * srgb_from_linear(std::clamp(c, 0.0, 1.0))));
-        text += "0123456789abcdef"[byte / 16];
-        text += "0123456789abcdef"[byte % 16];
-    }
-    return text;
-}
-
-using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
-
-pugi::xml_node append(pugi::xml_node parent, const char* name, Attributes attributes) {
-    pugi::xml_node node = parent.append_child(name);
-    for (const auto& [key, value] : attributes) node.append_attribute(key).set_value(value.c_str());
-    return node;
-}
 
 class Legend {
 public:
@@ -86,15 +63,15 @@ public:
             named() ? kTop + kRow * static_cast<int>(options_.names.size()) + kGap : kBarEnd + kBottom + (apart() ? kApart : 0);
         const std::string width = std::to_string(end_ + kRight), height = std::to_string(below);
         pugi::xml_document document;
-        const pugi::xml_node svg = append(document, "svg",
-                                          {{"xmlns", "http://www.w3.org/2000/svg"},
-                                           {"width", width},
-                                           {"height", height},
-                                           {"viewBox", "0 0 " + width + " " + height},
-                                           {"font-family", "sans-serif"},
-                                           {"font-size", "12"},
-                                           {"fill", kInk}});
-        append(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
+        const pugi::xml_node svg = append_element(document, "svg",
+                                                  {{"xmlns", "http://www.w3.org/2000/svg"},
+                                                   {"width", width},
+                                                   {"height", height},
+                                                   {"viewBox", "0 0 " + width + " " + height},
+                                                   {"font-family", "sans-serif"},
+                                                   {"font-size", "12"},
+                                                   {"fill", kInk}});
+        append_element(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
         append_text(svg, 0.5 * (kLeft + end_), 20, "middle",
                     options_.note.empty() ? options_.title : options_.title + ", " + options_.note)
             .append_attribute("style")
@@ -131,17 +108,19 @@ private:
         for (const auto& knot : function_.color) {
             if (inside(knot.value)) values.insert(knot.value);
         }
-        const auto gradient =
-            append(svg, "linearGradient",
-                   {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", number(kLeft)}, {"x2", number(end_)}});
+        const auto gradient = append_element(
+            svg, "linearGradient",
+            {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", svg_number(kLeft)}, {"x2", svg_number(end_)}});
         for (const double value : values) {
-            append(gradient, "stop",
-                   {{"offset", number(100 * part(range_, value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
+            append_element(gradient, "stop",
+                           {{"offset", svg_number(100 * part(range_, value)) + "%"},
+                            {"stop-color", svg_color(color_at(function_, value))}});
         }
     }
 
     static pugi::xml_node append_text(pugi::xml_node svg, double x, double y, const char* anchor, const std::string& text) {
-        pugi::xml_node node = append(svg, "text", {{"x", number(x)}, {"y", number(y)}, {"text-anchor", anchor}});
+        pugi::xml_node node =
+            append_element(svg, "text", {{"x", svg_number(x)}, {"y", svg_number(y)}, {"text-anchor", anchor}});
         node.text().set(detail::printable(text).c_str());
         return node;
     }
@@ -149,13 +128,13 @@ private:
     void append_names(pugi::xml_node svg) const {
         for (std::size_t i = 0; i < options_.names.size(); ++i) {
             const int top = kTop + kRow * static_cast<int>(i);
-            append(svg, "rect",
-                   {{"x", number(kLeft)},
-                    {"y", number(top)},
-                    {"width", "14"},
-                    {"height", "14"},
-                    {"fill", hex(color_at(function_, options_.value_of(i)))},
-                    {"stroke", kInk}});
+            append_element(svg, "rect",
+                           {{"x", svg_number(kLeft)},
+                            {"y", svg_number(top)},
+                            {"width", "14"},
+                            {"height", "14"},
+                            {"fill", svg_color(color_at(function_, options_.value_of(i)))},
+                            {"stroke", kInk}});
             append_text(svg, kLeft + 22, top + 12, "start", options_.names[i]);
         }
     }
@@ -172,31 +151,34 @@ private:
                 .set_value("font-size:14px;font-weight:bold");
             append_ticks(svg, opacity_range_, y(0));
         }
-        append(svg, "path",
-               {{"fill", apart() ? "#ddd" : kColorsUrl}, {"d", line + " V" + number(y(0)) + " H" + number(kLeft) + " Z"}});
+        append_element(
+            svg, "path",
+            {{"fill", apart() ? "#ddd" : kColorsUrl}, {"d", line + " V" + svg_number(y(0)) + " H" + svg_number(kLeft) + " Z"}});
         for (const int alpha : {0, 1}) {
-            append(svg, "path",
-                   {{"stroke", "#999"}, {"d", "M" + number(kLeft) + " " + number(y(alpha)) + " H" + number(end_)}});
+            append_element(
+                svg, "path",
+                {{"stroke", "#999"}, {"d", "M" + svg_number(kLeft) + " " + svg_number(y(alpha)) + " H" + svg_number(end_)}});
             append_text(svg, kLeft - 6, y(alpha) + 4, "end", std::to_string(alpha));
         }
-        append(svg, "path",
-               {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1.5"}, {"stroke-linejoin", "round"}, {"d", line}});
-        const std::string turned = "translate(" + number(kLeft - 26) + " " + number(y(0.5)) + ") rotate(-90)";
+        append_element(
+            svg, "path",
+            {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1.5"}, {"stroke-linejoin", "round"}, {"d", line}});
+        const std::string turned = "translate(" + svg_number(kLeft - 26) + " " + svg_number(y(0.5)) + ") rotate(-90)";
         append_text(svg, 0, 0, "middle", "opacity").append_attribute("transform").set_value(turned.c_str());
     }
 
     [[nodiscard]] std::string curve_point(double value) const {
-        return number(x(opacity_range_, value)) + " " + number(y(alpha_at(function_, value)));
+        return svg_number(x(opacity_range_, value)) + " " + svg_number(y(alpha_at(function_, value)));
     }
 
     void append_bar(pugi::xml_node svg) const {
-        append(svg, "rect",
-               {{"x", number(kLeft)},
-                {"y", number(kBarTop)},
-                {"width", number(options_.width_px)},
-                {"height", number(kBar)},
-                {"fill", kColorsUrl},
-                {"stroke", kInk}});
+        append_element(svg, "rect",
+                       {{"x", svg_number(kLeft)},
+                        {"y", svg_number(kBarTop)},
+                        {"width", svg_number(options_.width_px)},
+                        {"height", svg_number(kBar)},
+                        {"fill", kColorsUrl},
+                        {"stroke", kInk}});
         if (options_.shape.below) append_tip(svg, kLeft, -kTip, *options_.shape.below);
         if (options_.shape.above) append_tip(svg, end_, kTip, *options_.shape.above);
         append_ticks(svg, range_, kBarEnd);
@@ -204,15 +186,16 @@ private:
 
     /// A tip of the bar, in the colour of values beyond its end.
     static void append_tip(pugi::xml_node svg, int end, int length, const Vec3& color) {
-        const std::string text = "M" + number(end) + " " + number(kBarTop) + " L" + number(end + length) + " " +
-                                 number(kBarTop + 0.5 * kBar) + " L" + number(end) + " " + number(kBarEnd) + " Z";
-        append(svg, "path", {{"fill", hex(color)}, {"stroke", kInk}, {"d", text}});
+        const std::string text = "M" + svg_number(end) + " " + svg_number(kBarTop) + " L" + svg_number(end + length) + " " +
+                                 svg_number(kBarTop + 0.5 * kBar) + " L" + svg_number(end) + " " + svg_number(kBarEnd) + " Z";
+        append_element(svg, "path", {{"fill", svg_color(color)}, {"stroke", kInk}, {"d", text}});
     }
 
     void append_ticks(pugi::xml_node svg, const KnotRange& range, double top) const {
         const int most = std::clamp(options_.width_px / 50, 5, 11);
         for (const auto& [value, label] : formatted(bar_ticks(options_.shape, range.min, range.max, most), options_.format)) {
-            append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(range, value)) + " " + number(top) + " v5"}});
+            append_element(svg, "path",
+                           {{"stroke", kInk}, {"d", "M" + svg_number(x(range, value)) + " " + svg_number(top) + " v5"}});
             append_text(svg, x(range, value), top + 19, "middle", label);
         }
     }

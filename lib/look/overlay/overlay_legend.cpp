@@ -17,11 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "subvol/detail/coverage.h"
 #include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
-#include "subvol/overlay.h"
+#include "subvol/vector_graphic.h"
 
 namespace subvol {
 
@@ -30,6 +29,7 @@ namespace {
 
 constexpr double kMostOfSide = 0.45;  // a longer title is cut off
 constexpr double kLeastLetter_px = 8;
+constexpr double kOverlap = 2;    // pixels of a step of the bar, of which the next step covers one: no seam is seen in vectors
 constexpr double kNameRow = 1.7;  // of a category, in letters
 
 /// A legend without a bar has names: of categories, or the value of a constant field.
@@ -71,16 +71,16 @@ public:
     /// The rows of a legend along the lower edge: title, bar and labels, or the title and one row of names.
     [[nodiscard]] int rows() const { return static_cast<int>(std::ceil((options_.names.empty() ? 5.6 : 4.2) * letter_)); }
 
-    void draw_below(Image& image) {
-        image_ = &image;
-        const double top = image.height - rows();
+    void draw_below(const DrawTarget& target) {
+        target_ = &target;
+        const double top = target.height() - rows();
         left_ = margin() + 0.5 * letter_;
         std::string title = options_.title;
         if (!options_.note.empty()) title += ", " + options_.note;
         draw_title(title, top + 1.4 * letter_);
         const double y0 = top + 2.1 * letter_;
         if (!options_.names.empty()) return draw_names_below(y0);
-        double right = image.width - left_;
+        double right = target.width() - left_;
         const double y1 = y0 + bar_width(), middle = 0.5 * (y0 + y1);
         const double left = left_ + (options_.shape.below ? bar_width() : 0);
         if (options_.shape.below) draw_tip({left_, middle}, {left, middle}, *options_.shape.below);
@@ -91,20 +91,20 @@ public:
         for (int x = static_cast<int>(left); x < static_cast<int>(right); ++x) {
             const double part = (x + 0.5 - left) / (right - left);
             const Vec3 color = color_at(function_, options_.shape.scale.at(part, colors_.min, colors_.max));
-            for (int y = static_cast<int>(y0); y < static_cast<int>(y1); ++y) put_inside(x, y, color);
+            draw_box(*target_, whole(x, y0), whole(std::min(x + kOverlap, right), y1), color);
         }
         draw_frame(static_cast<int>(left), static_cast<int>(y0), static_cast<int>(right), static_cast<int>(y1));
         for (const auto& [value, label] : side_by_side(ticks(colors_), right - left)) {
             const double x = left + part_of(colors_, value) * (right - left);
             line({x, y1}, {x, y1 + 0.4 * letter_}, 1);
             const double half = 0.5 * text_width_px(label, letter_);
-            write({std::clamp(x, half, image.width - half), y1 + 1.5 * letter_}, label, TextAnchor::Middle);
+            write({std::clamp(x, half, target.width() - half), y1 + 1.5 * letter_}, label, TextAnchor::Middle);
         }
     }
 
-    void draw(Image& image) {
-        image_ = &image;
-        left_ = image.width - width() + margin();
+    void draw(const DrawTarget& target) {
+        target_ = &target;
+        left_ = target.width() - width() + margin();
         const double bottom = height_ - (options_.note.empty() ? 2.2 : 4) * letter_;
         if (!options_.note.empty()) draw_title(options_.note, height_ - 0.7 * letter_);
         if (!options_.names.empty()) return draw_names(bottom);
@@ -147,14 +147,14 @@ private:
     }
 
     void write(const Vec2& place, const std::string& text, TextAnchor anchor = TextAnchor::Start, double size = 1) const {
-        draw_text(*image_, place, text, {.size_px = size * letter_, .color = ink_, .anchor = anchor});
+        draw_text(*target_, place, text, {.size_px = size * letter_, .color = ink_, .anchor = anchor});
     }
 
     void draw_title(const std::string& title, double base) const { write_within({left_, base}, title, 1.08); }
 
     /// Writes a text up to the picture's edge.
     void write_within(const Vec2& place, const std::string& text, double size) const {
-        write(place, cut_text(text, size * letter_, image_->width - place.x - 0.3 * margin()), TextAnchor::Start, size);
+        write(place, cut_text(text, size * letter_, target_->width() - place.x - 0.3 * margin()), TextAnchor::Start, size);
     }
 
     [[nodiscard]] double names_width() const {
@@ -189,7 +189,7 @@ private:
         for (std::size_t i = 0; i < options_.names.size(); ++i) {
             const bool last = i + 1 == options_.names.size();
             const double width = row + text_width_px(options_.names[i], letter_) + letter_;
-            if (x + width + (last ? 0 : 6 * letter_) > image_->width)
+            if (x + width + (last ? 0 : 6 * letter_) > target_->width())
                 return write({x, base}, "and " + std::to_string(options_.names.size() - i) + " more");
             draw_swatch(x, y, color_at(function_, options_.value_of(i)));
             write({x + row, base}, options_.names[i]);
@@ -199,9 +199,7 @@ private:
 
     void draw_swatch(double x, double y, const Vec3& color) const {
         const int x0 = static_cast<int>(x), y0 = static_cast<int>(y), side = static_cast<int>(1.1 * letter_);
-        for (int dy = 0; dy < side; ++dy) {
-            for (int dx = 0; dx < side; ++dx) put_inside(x0 + dx, y0 + dy, color);
-        }
+        draw_box(*target_, Vec2(x0, y0), Vec2(x0 + side, y0 + side), color);
         draw_frame(x0, y0, x0 + side, y0 + side);
     }
 
@@ -209,24 +207,13 @@ private:
     void draw_tip(const Vec2& from, const Vec2& to, const Vec3& color) const {
         const Vec2 side = 0.5 * Vec2(to.y - from.y, from.x - to.x);
         const Vec2 a = to + side, b = to - side;
-        const int x0 = static_cast<int>(std::min({from.x, a.x, b.x})), x1 = static_cast<int>(std::max({from.x, a.x, b.x}));
-        const int y0 = static_cast<int>(std::min({from.y, a.y, b.y})), y1 = static_cast<int>(std::max({from.y, a.y, b.y}));
-        const double length = glm::length(to - from);
-        const Vec2 along = (to - from) / length;
-        for (int y = y0; y < y1; ++y) {
-            for (int x = x0; x < x1; ++x) {
-                const Vec2 place = Vec2(x + 0.5, y + 0.5) - from;
-                const double across = std::abs(along.x * place.y - along.y * place.x);
-                if (across <= 0.5 * glm::dot(along, place)) put_inside(x, y, color);
-            }
-        }
+        draw_area(*target_, std::array{from, a, b}, color);
         line(from, a, 1);
         line(from, b, 1);
     }
 
-    void put_inside(int x, int y, const Vec3& color) const {
-        if (x >= 0 && y >= 0 && x < image_->width && y < image_->height) put_over(*image_, x, y, color, 1);
-    }
+    /// The corner of the pixel that a place is in.
+    static Vec2 whole(double x, double y) { return {std::trunc(x), std::trunc(y)}; }
 
     void draw_bar(double title_base, double bottom) const {
         draw_title(options_.title, title_base);
@@ -244,7 +231,7 @@ private:
         for (int y = static_cast<int>(top); y < static_cast<int>(bottom); ++y) {
             const Vec3 color =
                 color_at(function_, options_.shape.scale.at((bottom - y - 0.5) / (bottom - top), colors_.min, colors_.max));
-            for (int x = x0; x < x1; ++x) put_inside(x, y, color);
+            draw_box(*target_, Vec2(x0, y), whole(x1, std::min(y + kOverlap, bottom)), color);
         }
         draw_frame(x0, static_cast<int>(top), x1, static_cast<int>(bottom));
         draw_ticks(x1, static_cast<int>(top), static_cast<int>(bottom), colors_);
@@ -257,7 +244,7 @@ private:
     }
 
     void line(const Vec2& from, const Vec2& to, double width) const {
-        draw_line(*image_, from, to, {.width_px = width * std::max(1.0, letter_ / 14), .color = ink_});
+        draw_line(*target_, from, to, {.width_px = width * std::max(1.0, letter_ / 14), .color = ink_});
     }
 
     void draw_ticks(double x, double top, double bottom, const KnotRange& range) const {
@@ -292,7 +279,7 @@ private:
     LegendOptions options_;
     KnotRange colors_, opacities_;
     double height_, shorter_, letter_;
-    Image* image_ = nullptr;
+    const DrawTarget* target_ = nullptr;
     Vec3 ink_{0.0};
     double left_ = 0;
 };
@@ -315,11 +302,16 @@ int legend_extent_px(const TransferFunction& function, const LegendOptions& opti
 
 void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const LegendStyle& style,
                  int height) {
+    draw_legend(DrawTarget(image), function, options, style, height);
+}
+
+void draw_legend(const DrawTarget& target, const TransferFunction& function, const LegendOptions& options,
+                 const LegendStyle& style, int height) {
     LegendPainter painter(function, options, style, height);
     if (style.side == LegendSide::Right) {
-        painter.draw(image);
+        painter.draw(target);
     } else {
-        painter.draw_below(image);
+        painter.draw_below(target);
     }
 }
 

@@ -12,9 +12,10 @@
 #include "overlay_texts.h"
 #include "subvol/detail/coverage.h"
 #include "subvol/detail/number_text.h"
-#include "subvol/overlay.h"
+#include "subvol/detail/printable.h"
 #include "subvol/srgb.h"
 #include "subvol/vec.h"
+#include "subvol/vector_graphic.h"
 
 namespace subvol {
 
@@ -134,7 +135,11 @@ PlacedText place_glyphs(std::string_view utf8) {
 
 }  // namespace
 
-void draw_text(Image& image, const Vec2& place, const std::string& text, const TextOptions& options) {
+void draw_text(const DrawTarget& target, const Vec2& place, const std::string& text, const TextOptions& options) {
+    if (VectorGraphic* const graphic = target.graphic()) {
+        graphic->shapes.emplace_back(TextShape{place, printable(text), options});
+        return;
+    }
     const PlacedText placed = place_glyphs(text);
     const double part = options.anchor == TextAnchor::Start ? 0 : options.anchor == TextAnchor::Middle ? 0.5 : 1;
     const double start = place.x - part * placed.width * options.size_px;
@@ -143,8 +148,12 @@ void draw_text(Image& image, const Vec2& place, const std::string& text, const T
         for (auto& polygon : polygons) {
             for (Vec2& p : polygon) p = Vec2(start + offset * options.size_px, place.y) + options.size_px * p;
         }
-        fill(image, polygons, options.color);
+        fill(*target.image(), polygons, options.color);
     }
+}
+
+void draw_text(Image& image, const Vec2& place, const std::string& text, const TextOptions& options) {
+    draw_text(DrawTarget(image), place, text, options);
 }
 
 double text_width_px(const std::string& text, double size_px) {
@@ -173,10 +182,47 @@ std::vector<std::string> missing_letters(std::span<const std::string> texts) {
     return missing;
 }
 
+void draw_polyline(const DrawTarget& target, std::span<const Vec2> places, const LineOptions& options) {
+    if (VectorGraphic* const graphic = target.graphic()) {
+        graphic->shapes.emplace_back(LineShape{{places.begin(), places.end()}, options});
+        return;
+    }
+    Image& image = *target.image();
+    for (std::size_t i = 1; i < places.size(); ++i) {
+        for_each_pixel_of_line(
+            image.width, image.height, places[i - 1], places[i], options.width_px,
+            [&](int x, int y, double cover, double) { put_over(image, x, y, options.color, options.alpha * cover); });
+    }
+}
+
+void draw_line(const DrawTarget& target, const Vec2& from, const Vec2& to, const LineOptions& options) {
+    draw_polyline(target, std::array{from, to}, options);
+}
+
 void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options) {
-    for_each_pixel_of_line(image.width, image.height, from, to, options.width_px, [&](int x, int y, double cover, double) {
-        put_over(image, x, y, options.color, options.alpha * cover);
-    });
+    draw_line(DrawTarget(image), from, to, options);
+}
+
+void draw_area(const DrawTarget& target, std::span<const Vec2> corners, const Vec3& color) {
+    std::vector<Vec2> polygon(corners.begin(), corners.end());
+    if (VectorGraphic* const graphic = target.graphic()) {
+        graphic->shapes.emplace_back(AreaShape{.corners = std::move(polygon), .color = color});
+    } else {
+        fill(*target.image(), std::array{std::move(polygon)}, color);
+    }
+}
+
+void draw_box(const DrawTarget& target, const Vec2& low, const Vec2& high, const Vec3& color, double alpha) {
+    if (VectorGraphic* const graphic = target.graphic()) {
+        graphic->shapes.emplace_back(AreaShape{{low, {high.x, low.y}, high, {low.x, high.y}}, color, alpha});
+        return;
+    }
+    Image& image = *target.image();
+    const auto pixel = [](double place, int most) { return static_cast<int>(std::clamp(place, 0.0, double(most))); };
+    const int right = pixel(high.x, image.width), bottom = pixel(high.y, image.height);
+    for (int y = pixel(low.y, image.height); y < bottom; ++y) {
+        for (int x = pixel(low.x, image.width); x < right; ++x) put_over(image, x, y, color, alpha);
+    }
 }
 
 namespace {

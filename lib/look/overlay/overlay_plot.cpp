@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "subvol/detail/coverage.h"
 #include "subvol/detail/round_ticks.h"
-#include "subvol/overlay.h"
+#include "subvol/vector_graphic.h"
 
 namespace subvol {
 
@@ -57,10 +56,11 @@ PlotMargins plot_margins_px(int height, const PictureScale& up) {
             .bottom = static_cast<int>(std::ceil(3.6 * letter))};
 }
 
-void draw_scales(Image& image, const PlotFrame& frame, const PictureScale& across, const PictureScale& up, const Vec3& ink) {
+void draw_scales(const DrawTarget& target, const PlotFrame& frame, const PictureScale& across, const PictureScale& up,
+                 const Vec3& ink) {
     const double letter = letter_of(frame.height), width = std::max(1.0, letter / 14);
     const Vec2 low(frame.left, frame.top + frame.height), high(frame.left + frame.width, frame.top);
-    const auto line = [&](const Vec2& from, const Vec2& to) { draw_line(image, from, to, {.width_px = width, .color = ink}); };
+    const auto line = [&](const Vec2& from, const Vec2& to) { draw_line(target, from, to, {.width_px = width, .color = ink}); };
     const std::array<Vec2, 4> corners{{low, {high.x, low.y}, high, {low.x, high.y}}};
     for (std::size_t k = 0; k < 4; ++k) line(corners[k], corners[(k + 1) % 4]);
     const TextOptions middle{.size_px = letter, .color = ink, .anchor = TextAnchor::Middle};
@@ -68,44 +68,57 @@ void draw_scales(Image& image, const PlotFrame& frame, const PictureScale& acros
     for (const Tick& tick : ticks_of(across, frame.width, letter)) {
         const double x = low.x + part_of(across, tick.value) * frame.width;
         line({x, low.y}, {x, low.y + kTickLength * letter});
-        draw_text(image, {x, low.y + (kTickLength + 1.1) * letter}, tick.label, middle);
+        draw_text(target, {x, low.y + (kTickLength + 1.1) * letter}, tick.label, middle);
     }
     for (const Tick& tick : ticks_of(up, frame.height, letter)) {
         const double y = low.y - part_of(up, tick.value) * frame.height;
         line({low.x - kTickLength * letter, y}, {low.x, y});
-        draw_text(image, {low.x - (kTickLength + kTickGap) * letter, y + 0.36 * letter}, tick.label, end);
+        draw_text(target, {low.x - (kTickLength + kTickGap) * letter, y + 0.36 * letter}, tick.label, end);
     }
-    draw_text(image, {0.5 * (low.x + high.x), low.y + (kTickLength + 2.6) * letter}, across.title, middle);
-    draw_text(image, {low.x - (kTickLength + kTickGap) * letter, high.y - 0.9 * letter}, up.title, end);
+    draw_text(target, {0.5 * (low.x + high.x), low.y + (kTickLength + 2.6) * letter}, across.title, middle);
+    draw_text(target, {low.x - (kTickLength + kTickGap) * letter, high.y - 0.9 * letter}, up.title, end);
+}
+
+void draw_scales(Image& image, const PlotFrame& frame, const PictureScale& across, const PictureScale& up, const Vec3& ink) {
+    draw_scales(DrawTarget(image), frame, across, up, ink);
+}
+
+void draw_label(const DrawTarget& target, const Vec2& place, const std::string& text, const TextOptions& options,
+                const Vec3& paper) {
+    const double size = options.size_px, width = text_width_px(text, size);
+    const double part = options.anchor == TextAnchor::Start ? 0 : options.anchor == TextAnchor::Middle ? 0.5 : 1;
+    const double left =
+        std::clamp(place.x - part * width, 0.2 * size, std::max(0.2 * size, target.width() - width - 0.2 * size));
+    const double base = std::clamp(place.y, size, std::max(size, target.height() - 0.4 * size));
+    const auto whole = [](double x, double y) { return Vec2(std::trunc(x), std::trunc(y)); };  // pixels
+    draw_box(target, whole(left - 0.2 * size, base - 0.9 * size), whole(left + width + 0.2 * size, base + 0.3 * size) + Vec2(1),
+             paper, 0.7);
+    draw_text(target, {left, base}, text, {.size_px = size, .color = options.color});
 }
 
 void draw_label(Image& image, const Vec2& place, const std::string& text, const TextOptions& options, const Vec3& paper) {
-    const double size = options.size_px, width = text_width_px(text, size);
-    const double part = options.anchor == TextAnchor::Start ? 0 : options.anchor == TextAnchor::Middle ? 0.5 : 1;
-    const double left = std::clamp(place.x - part * width, 0.2 * size, std::max(0.2 * size, image.width - width - 0.2 * size));
-    const double base = std::clamp(place.y, size, std::max(size, image.height - 0.4 * size));
-    const int x0 = static_cast<int>(left - 0.2 * size), x1 = static_cast<int>(left + width + 0.2 * size);
-    const int y0 = static_cast<int>(base - 0.9 * size), y1 = static_cast<int>(base + 0.3 * size);
-    for (int y = std::max(0, y0); y <= std::min(image.height - 1, y1); ++y) {
-        for (int x = std::max(0, x0); x <= std::min(image.width - 1, x1); ++x) put_over(image, x, y, paper, 0.7);
-    }
-    draw_text(image, {left, base}, text, {.size_px = size, .color = options.color});
+    draw_label(DrawTarget(image), place, text, options, paper);
 }
 
-void draw_mark(Image& image, const Vec2& place, const std::string& text, double size_px, const Vec3& ink, const Vec3& paper,
-               bool hidden) {
-    if (!(place.x >= 0 && place.y >= 0 && place.x < image.width && place.y < image.height)) return;
+void draw_mark(const DrawTarget& target, const Vec2& place, const std::string& text, double size_px, const Vec3& ink,
+               const Vec3& paper, bool hidden) {
+    if (!(place.x >= 0 && place.y >= 0 && place.x < target.width() && place.y < target.height())) return;
     const double arm = 0.45 * size_px, width = std::max(1.2, size_px / 9);
     const Vec2 x(arm, 0), y(0, arm);
     for (const bool under : {true, false}) {
         const LineOptions line{
             .width_px = under ? 2.4 * width : width, .color = under ? paper : ink, .alpha = hidden ? 0.5 : 1};
-        for (const Vec2& side : {x, -x, y, -y}) draw_line(image, place + 0.35 * side, place + side, line);
+        for (const Vec2& side : {x, -x, y, -y}) draw_line(target, place + 0.35 * side, place + side, line);
     }
-    const bool at_left = place.x + 0.8 * size_px + text_width_px(text, size_px) < image.width;
-    draw_label(image,
+    const bool at_left = place.x + 0.8 * size_px + text_width_px(text, size_px) < target.width();
+    draw_label(target,
                place + Vec2(at_left ? 0.8 * size_px : -0.8 * size_px, place.y > 2 * size_px ? -0.5 * size_px : 1.2 * size_px),
                text, {.size_px = size_px, .color = ink, .anchor = at_left ? TextAnchor::Start : TextAnchor::End}, paper);
+}
+
+void draw_mark(Image& image, const Vec2& place, const std::string& text, double size_px, const Vec3& ink, const Vec3& paper,
+               bool hidden) {
+    draw_mark(DrawTarget(image), place, text, size_px, ink, paper, hidden);
 }
 
 }  // namespace subvol

@@ -35,6 +35,11 @@ void write_image(const std::filesystem::path& path, const Image& image, const st
 /// throws: Error(InvalidInput) as `srgb_bytes`
 [[nodiscard]] std::vector<std::uint8_t> srgba_bytes(const Image& image);
 
+/// The bytes of a `.png` as `write_image` writes it.
+///
+/// throws: Error(InvalidInput) as `srgb_bytes`
+[[nodiscard]] std::string png_bytes(const Image& image, const std::optional<Vec3>& background = Vec3(0.0));
+
 /// Reads an image of any format that OpenImageIO reads as linear premultiplied RGBA; integer samples are decoded from sRGB. A
 /// channel Z is ignored. Of a part of a larger picture it has the pixels alone: `read_placed_image` knows where they are.
 ///

@@ -55,7 +55,9 @@ void expect_inside(const SurfaceBodies& bodies, const std::function<bool(const V
                 clear = clear && inside(near) == inside(x);
             }
         }
-        if (clear) EXPECT_EQ(bodies.likeness(x) > 0.5F, inside(x)) << x.x << ' ' << x.y << ' ' << x.z;
+        if (clear) {
+            EXPECT_EQ(bodies.likeness(x) > 0.5F, inside(x)) << x.x << " " << x.y << " " << x.z;
+        }
     }
 }
 
