@@ -44,7 +44,8 @@ WithFacts<RbfVolume> sample_tets_reported(const HexMesh& mesh, const SampleArgum
 }
 
 WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments& arguments,
-                                     const std::optional<TransferFunction>& seen, const CLI::App& app, Progress* progress) {
+                                     const std::optional<TransferFunction>& seen, const CLI::App& app, Progress* progress,
+                                     BoundaryValues* faces) {
     Facts facts;
     refuse_mesh_options(app, "needs a mesh; this is a grid of voxels");
     refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
@@ -53,8 +54,10 @@ WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments&
         return vdb().sample_rbf_points(grid, {.spacing_world = options.spacing_world,
                                               .correction = options.correction,
                                               .kernel = options.kernel,
+                                              .faces = faces != nullptr,
                                               .progress = progress});
     });
+    if (faces != nullptr) *faces = std::move(sampled.faces);
     if (grid.report().level_set)
         facts.note(text(grid.report().name, " is a level set: the body within its surface is taken, of density 1"));
     facts["spacing"] = sampled.report.spacing_world;

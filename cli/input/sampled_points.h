@@ -28,9 +28,10 @@ namespace subvol::cli {
 
 /// The same of a grid's voxels.
 ///
-/// app: the verb's; its options that apply to meshes only are refused
+/// app:   the verb's; its options that apply to meshes only are refused
+/// faces: gets the faces of the voxels of a grid that is no level set; null: they are not wanted
 [[nodiscard]] WithFacts<RbfVolume> sample_reported(const VdbGrid& grid, const SampleArguments& arguments,
                                                    const std::optional<TransferFunction>& seen, const CLI::App& app,
-                                                   Progress* progress);
+                                                   Progress* progress, BoundaryValues* faces = nullptr);
 
 }  // namespace subvol::cli

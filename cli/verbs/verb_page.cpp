@@ -5,7 +5,8 @@
 //     all steps   one box, one range for each field, one transfer function for each field
 //     page        kernels are rounded and merged until the file is no larger than asked; the errors of that are said
 //
-// All steps must have the fields of the first, in the same order. A level set gives one step with the body inside its surface.
+// All steps must have the fields of the first, in the same order. A grid of voxels gives one step: of a level set the body
+// inside its surface, of fog the voxels, which end at their faces.
 // The camera is the one that `render` would take. Unless it is left out, a picture of the first view by splats is added, with
 // which a reader's drawing can be compared. A title or source on the page never has the folder of the file.
 #include <CLI/CLI.hpp>
@@ -52,7 +53,7 @@ public:
                "volume, change the transfer function, clip, choose fields and steps, and pick values. JSON: bytes, points, "
                "kept (kernels in the page), bits, fields [{name, rmse, max_error, range}].") {
         show_limit_of_parts();
-        add_input(app(), "FILE", input_, text(input_help(), "; or a .vdb level set"))->required();
+        add_input(app(), "FILE", input_, text(input_help(), "; or a grid of a .vdb"))->required();
         add_option(app(), Option("output", output_).also("o").help("FILE", "the page to write (.html)"))->required();
         add_option(app(), Option("fields", fields_)
                               .with_commas()
@@ -84,7 +85,17 @@ public:
 
     int run(Report& report) override {
         check_output(output_, {".html"});
-        picture_.settle_look(true);
+        std::optional<VdbGrid> grid;
+        if (kind_of(input_) == InputKind::Grid) {
+            refuse_options(app(), {"--fields"}, "needs a mesh; this is a grid of voxels");
+            grid = report.unpack(load_grid(input_, common(), report.progress()));
+        }
+        const bool solid = !grid || grid->report().level_set;
+        picture_.settle_look(solid);
+        if (picture_.look == Look::Solid && !solid) {
+            throw Error(ErrorCode::InvalidInput, "is fog, which has no surface", text(input_, ", grid ", grid->report().name),
+                        "--look volume or xray");
+        }
         if (picture_.look == Look::Isosurface) {
             throw Error(ErrorCode::InvalidInput, "a page has no lit isosurfaces", "--look isosurface",
                         "solid, volume or xray; --tf isosurface draws them without light");
@@ -93,9 +104,8 @@ public:
         report.if_long("--max-bytes that fits without merging, or a larger --spacing");
         tets_ = TetRefinement(refine_);
         PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = source_name()};
-        const bool voxels = kind_of(input_) == InputKind::Grid;
         const std::vector<PageStep> steps =
-            voxels ? std::vector<PageStep>{step_of_level_set(options, report)} : make_steps(options, report);
+            grid ? std::vector<PageStep>{step_of_grid(*grid, options, report)} : make_steps(options, report);
         finish_options(options, steps.back(), report);
         const PageResult page = report.timed("page", [&] { return make_page(steps, options); });
         report.timed("write", [&] { detail::write_text_file(output_, page.html); });
@@ -193,21 +203,22 @@ private:
         return steps;
     }
 
-    /// The body within the surface of a level set.
-    [[nodiscard]] PageStep step_of_level_set(PageOptions& options, Report& report) {
-        refuse_options(app(), {"--fields"}, "needs a mesh; this is a grid of voxels");
-        const VdbGrid grid = report.unpack(load_grid(input_, common(), report.progress()));
-        if (!grid.report().level_set) {
-            throw Error(
-                ErrorCode::InvalidInput, "is fog, which has no boundary", text(input_, ", grid ", grid.report().name),
-                text("a level set; `", detail::command_for_surface(input_, "--iso VALUE"), "` makes a control mesh of it"));
+    /// The body within the surface of a level set, or fog up to the faces of its voxels.
+    [[nodiscard]] PageStep step_of_grid(const VdbGrid& grid, PageOptions& options, Report& report) {
+        const GridReport& about = grid.report();
+        PageStep step;
+        step.volume = report.unpack(
+            sample_reported(grid, sample_, std::nullopt, app(), report.progress(), about.level_set ? nullptr : &step.boundary));
+        if (about.level_set)
+            step.boundary = {step.volume.boundary, {std::vector<double>(step.volume.boundary.points.size(), 1)}};
+        PageField field{.name = step.volume.channels.front().name, .min = 1, .max = 1};
+        if (!about.level_set) {
+            field.min = about.min;
+            field.max = about.max;
         }
-        PageStep step{.label = {},
-                      .volume = report.unpack(sample_reported(grid, sample_, std::nullopt, app(), report.progress())),
-                      .boundary = {}};
-        step.boundary = {step.volume.boundary, {std::vector<double>(step.volume.boundary.points.size(), 1)}};
-        options.fields.push_back({.name = step.volume.channels.front().name, .min = 1, .max = 1});
-        box_ = grid.report().frame;
+        options.fields.push_back(std::move(field));
+        options.solid = about.level_set;
+        box_ = about.frame;
         return step;
     }
 
@@ -236,8 +247,10 @@ private:
         const PageField& first = options.fields.front();
         const Range range{first.min, first.max};
         const Optics optics = picture_.make_optics(box_, range, range);
-        const std::vector<View> views = picture_.make_views(
-            box_, mesh_.cells.empty() ? step.boundary.surface.points : framed_points(mesh_, picture_.look, optics));
+        std::vector<Vec3> framed;  // none of fog: the camera is fitted to its box
+        if (options.solid)
+            framed = mesh_.cells.empty() ? step.boundary.surface.points : framed_points(mesh_, picture_.look, optics);
+        const std::vector<View> views = picture_.make_views(box_, framed);
         options.camera = views.front().camera();
         options.up = picture_.eye.up;
         if (no_reference_) return;

@@ -199,6 +199,22 @@ class InTheBrowser(unittest.TestCase):
                 self.assertEqual(self.browser.requests(), [])
                 self.assertEqual(self.browser.complaints(), [])
 
+    def test_fog_is_the_picture_that_render_makes(self):
+        self.command("model", "ball", "--resolution", "6", "-o", "ball.vtu")
+        self.command("vdb", "ball.vtu", "-o", "smoke.vdb", "--density", "1.2-x*x-y*y-z*z", "--resolution", "24")
+        seen = ["--opacity", "0%:.1,100%:.3"]  # up to the rim
+        made = self.command("page", "smoke.vdb", "-o", "f.html", *seen, "--json").json()
+        self.assertEqual(made["points"], made["active_voxels"])
+        self.command("render", "smoke.vdb", "-o", "f.exr", "--size", "128", *seen)
+        self.open("f.html", 300)
+        self.picture("f.tif", 128)
+        compared = self.command("compare", "f.tif", "f.exr", "--json").json()
+        self.assertGreater(compared["psnr"], 45)  # its rays end at the faces of voxels, those of `render` at a weight
+        self.assertEqual(self.browser.evaluate("[...document.getElementById('look').options].map(o => o.value).join()"), "volume,xray")
+        self.assertEqual(self.browser.evaluate("document.getElementById('look').value"), "volume")
+        self.assertEqual(self.browser.complaints(), [])
+        self.shot("fog.png")
+
     def test_same_picture_as_render_with_the_eye_inside(self):
         (self.folder / "two.vtk").write_text(TWO_FIELDS)
         inside, apart = "--camera", ".4,.5,.6,1,.6,.5,0,0,1,60"

@@ -103,7 +103,7 @@ class OtherInputs(InFolder):
         self.refused(["approximate", "torus.ply", "--onto", "model:ball:2", "-o", "a.vtu"], "torus.ply", read["torus.ply"])
         for verb, more in (("check", []), ("subdivide", ["-o", "a.vtu"])):
             self.refused([verb, "smoke.vdb", *more], "smoke.vdb", "smoke.vdb: is a grid, not a mesh of cells (`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes")
-        self.refused(["page", "smoke.vdb", "-o", "a.html"], "smoke.vdb", "is fog, which has no boundary", "`subvol mesh smoke.vdb --iso VALUE -o smoke.vtu` makes")
+        self.refused(["page", "smoke.vdb", "-o", "a.html", "--look", "solid"], "smoke.vdb", "is fog, which has no surface", "--look volume or xray")
         self.refused(["info", "gone.obj"], "gone.obj", "gone.obj: cannot be read: No such file")
         self.refused(["info", "gone.glb"], "gone.glb", "gone.glb: cannot be read: No such file")
 

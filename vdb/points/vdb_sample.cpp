@@ -25,6 +25,7 @@
 #include "openvdb_grids.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
+#include "voxel_faces.h"
 
 namespace subvol::detail {
 
@@ -333,6 +334,7 @@ VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOption
         std::size_t point = first[k];
         for (auto voxel = leaves[k]->cbeginValueOn(); voxel; ++voxel) writer.write(point++, voxel.getCoord(), differences);
     });
+    if (options.faces) result.faces = voxel_faces(*coarse.tree, lattice.to_world, lattice.origin);
     report_progress(options.progress, "sample voxels", 1);
     result.volume.bounds = box_of(result.volume);
     validate(result.volume);

@@ -267,6 +267,7 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
                   {"title", options.title},
                   {"source", options.source},
                   {"look", name_of(options.look)},
+                  {"solid", options.solid},
                   {"background", json_of(options.background)},
                   {"camera", camera_json(options.camera)},
                   {"up", std::string(name_of(options.up))},
@@ -284,9 +285,8 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
     }
     if (options.reference) {
         const Image& image = *options.reference;
-        json["reference"] = {{"width", image.width},
-                             {"height", image.height},
-                             {"png", base64(png_bytes(image, options.background))}};
+        json["reference"] = {
+            {"width", image.width}, {"height", image.height}, {"png", base64(png_bytes(image, options.background))}};
     }
     return json;
 }
@@ -368,6 +368,8 @@ std::string page_html(const PageOptions& options, PageJson json, const PageData&
 }  // namespace
 
 PageResult make_page(std::span<const PageStep> steps, const PageOptions& options) {
+    if (options.look == PageLook::Solid && !options.solid)
+        throw Error(ErrorCode::InvalidInput, "fog has no look Solid", "a page", "Volume or Xray");
     if (steps.empty() || options.fields.empty()) {
         throw Error(ErrorCode::InvalidInput, steps.empty() ? "a page has no step" : "a page has no field", {}, "at least one");
     }

@@ -58,6 +58,7 @@ class Page {
     $('steps').value = this.step;
     $('field-row').hidden = this.head.fields.length < 2;
     $('step-row').hidden = this.head.steps.length < 2;
+    if (!this.head.solid) $('look').remove(0);
     $('look').value = this.look;
     $('colors').add(new Option('as in the file', ''));
     Object.keys(this.head.presets).forEach((name) => $('colors').add(new Option(name, name)));

@@ -89,6 +89,45 @@ TEST_F(VdbSample, LinearFieldsComeBackUpToTheRim) {
     }
 }
 
+double volume_of(const Surface& surface) {
+    double six = 0;
+    for (const auto& [a, b, c] : surface.triangles)
+        six += glm::dot(surface.points[a], glm::cross(surface.points[b], surface.points[c]));
+    return six / 6;
+}
+
+// Kernels end at the faces of their voxels, or of the blocks of voxels: a closed surface, outward also where an axis is
+// mirrored, around as many parallelepipeds.
+TEST_F(VdbSample, FacesEncloseTheVoxels) {
+    openvdb::Mat4d mirrored = kSheared;
+    mirrored.preScale(openvdb::Vec3d(1, -1, 1));
+    for (const openvdb::Mat4d& to_world : {kSheared, mirrored}) {
+        auto voxels = make(linear, kBox, to_world);
+        voxels->getAccessor().setValueOff(Coord(0, 0, 0));       // a cavity
+        voxels->getAccessor().setValueOn(Coord(20, 20, 20), 7);  // alone
+        const VdbGrid grid = through_file(voxels);
+        const VoxelSampleResult result = sample_rbf_points(grid, {.faces = true});
+        const Surface& faces = result.faces.surface;
+        const double voxel = std::abs(glm::determinant(grid.voxels()->to_world()));
+        EXPECT_NEAR(volume_of(faces), static_cast<double>(grid.report().active_voxels) * voxel, 1e-9);
+        // Faces of a box of 20 × 16 × 14 voxels, of the cavity and of the voxel that is alone, two triangles each.
+        EXPECT_EQ(faces.triangles.size(), 2U * (2 * (20 * 16 + 16 * 14 + 20 * 14) + 6 + 6));
+        EXPECT_EQ(faces.points.size(), result.faces.values.front().size());
+        double least = 1e9, largest = -1e9;
+        for (std::size_t p = 0; p < faces.points.size(); ++p) {
+            const double value = result.faces.values.front()[p];
+            least = std::min(least, value);
+            largest = std::max(largest, value);
+        }
+        EXPECT_EQ(largest, 7);
+        EXPECT_NEAR(least, grid.report().min, 1e-6);  // at a corner of the box there is one voxel alone
+        // Of blocks of 2³, whose lattice is another one.
+        const VoxelSampleResult blocks = sample_rbf_points(grid, {.spacing_world = 2 * std::cbrt(voxel), .faces = true});
+        EXPECT_NEAR(volume_of(blocks.faces.surface), static_cast<double>(blocks.report.points) * 8 * voxel, 1e-9);
+        EXPECT_TRUE(sample_rbf_points(grid).faces.surface.triangles.empty());
+    }
+}
+
 TEST_F(VdbSample, WithoutCorrectionOnlyTheValuesAreThere) {
     const auto volume = sample_rbf_points(through_file(make(linear, kBox)), {.correction = Correction::None}).volume;
     for (std::size_t i = 0; i < volume.size(); ++i) {

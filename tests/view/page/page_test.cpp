@@ -110,6 +110,7 @@ TEST(Page, RefusesWhatItCannotDraw) {
     refused("1 channels", {.fields = {field, field}});
     step.boundary.values.resize(1);
     refused("no boundary", {.fields = {field}});
+    refused("fog has no look Solid", {.fields = {field}, .solid = false});
 }
 
 }  // namespace page_test

@@ -61,8 +61,9 @@ TEST_F(VectorGraphics, ScalesHaveATickAndALabelAtEachRoundValue) {
         if (label == "2") {
             EXPECT_NEAR(text.attribute("x").as_double(), 50 + 300 * 2 / 3.0, .01);
         }
-        if (label == "0.4")
-            EXPECT_NEAR(text.attribute("y").as_double(), 220 - .4 * 200, 5);  // its base line is below the middle
+        if (label == "0.4") {  // its base line is below the middle
+            EXPECT_NEAR(text.attribute("y").as_double(), 220 - .4 * 200, 5);
+        }
     }
     EXPECT_EQ(lines, 4 + labels.size() - 2);  // a frame, and a tick for each label but the titles
     EXPECT_EQ(labels.back(), "y");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "subvol/boundary_values.h"
 #include "subvol/kernel.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
@@ -14,7 +15,8 @@ struct VoxelSampleOptions {
     double spacing_world = 0;
     /// Its derivatives are differences between voxels; the body of a level set has none.
     Correction correction = Correction::Second;
-    Kernel kernel{};  ///< must be radial
+    Kernel kernel{};     ///< must be radial
+    bool faces = false;  ///< whether the faces of the blocks are wanted, too; a level set has its surface
     Progress* progress = nullptr;
 };
 
@@ -28,6 +30,8 @@ struct VoxelSampleReport {
 struct VoxelSampleResult {
     RbfVolume volume;
     VoxelSampleReport report;
+    BoundaryValues
+        faces{};  ///< between blocks that are kernels and those that are none, with the channel's values; if asked for
 };
 
 /// Turns the active voxels of a grid of floats into radial basis functions at their centres, in the order of the grid's leaves.

@@ -39,7 +39,7 @@ struct PageField {
 struct PageStep {
     std::string label{};        ///< the name in the chooser of steps
     RbfVolume volume{};         ///< compact kernels without Hessians; one channel for each field of the page, in their order
-    BoundaryValues boundary{};  ///< where the volume ends, with a value for each field at its points
+    BoundaryValues boundary{};  ///< where the volume ends, closed, with a value for each field at its points
 };
 
 struct PageOptions {
@@ -47,6 +47,7 @@ struct PageOptions {
     std::string source{};                                      ///< the file that the data are from
     std::vector<std::pair<std::string, std::string>> facts{};  ///< more of what stands on the page, under names
     std::vector<PageField> fields{};
+    bool solid = true;  ///< whether there is a body whose boundary can be looked at; false: fog, without the look Solid
     PageLook look = PageLook::Solid;
     Camera camera{};                ///< the camera with which the page opens
     UpAxis up = UpAxis::Z;          ///< the axis of the world that is up when a side is chosen
@@ -83,7 +84,8 @@ struct PageResult {
 /// the field and the step. The errors and the program's version stand on the page.
 ///
 /// throws: Error(InvalidInput) if there is no step or no field, channels or values do not match the fields, a boundary is
-///         empty, kernels are not compact or have Hessians, or the page cannot be made that small
+///         empty, the look is Solid without a solid, kernels are not compact or have Hessians, or the page cannot be made that
+///         small
 /// cost:   O(kernels), some µs each; the same bytes for any number of threads
 [[nodiscard]] PageResult make_page(std::span<const PageStep> steps, const PageOptions& options);
 
