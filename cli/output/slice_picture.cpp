@@ -9,7 +9,7 @@
 #include "picture_notes.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/image_io.h"
-#include "subvol/vector_graphic_file.h"
+#include "subvol/plot.h"
 #include "text.h"
 
 namespace subvol::cli {

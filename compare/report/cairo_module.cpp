@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module subvol_cairo.so: pages of PDF by cairo, which brings the libraries of fonts and of X11.
+// The module subvol_cairo.so: pages of PDF by cairo, which brings the libraries of fonts and of X11. A plot is drawn by its
+// parts (`PdfCanvas`), with markers and lines of the width of its scale; a vector graphic shape by shape, a pixel being three
+// quarters of a point.
 #include <cairo-pdf.h>
 #include <cairo.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "canvas.h"
-#include "subvol/vector_graphic.h"
+#include "subvol/overlay.h"
 
 namespace subvol::detail {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/vector_graphic_file.h"
-
 #include "pdf_canvas.h"
 #include "subvol/detail/module.h"
 #include "subvol/detail/output_file.h"
 #include "subvol/error.h"
+#include "subvol/plot.h"
 
 namespace subvol {
 

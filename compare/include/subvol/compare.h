@@ -22,4 +22,3 @@
 #include "subvol/study_report.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
-#include "subvol/vector_graphic_file.h"

@@ -20,7 +20,7 @@
 #include "subvol/detail/knot_values.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
-#include "subvol/vector_graphic.h"
+#include "subvol/overlay.h"
 
 namespace subvol {
 

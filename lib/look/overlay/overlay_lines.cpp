@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lines, areas and letters on a picture or a vector graphic, and what is made of them: axes and the scale bar. Letters of a
+// picture are the outlines of the built-in font, filled by the part of each pixel that is inside; those of a graphic stay text
+// of its fonts, which has about the same widths.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,9 +16,9 @@
 #include "subvol/detail/coverage.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/overlay.h"
 #include "subvol/srgb.h"
 #include "subvol/vec.h"
-#include "subvol/vector_graphic.h"
 
 namespace subvol {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "subvol/detail/round_ticks.h"
-#include "subvol/vector_graphic.h"
+#include "subvol/overlay.h"
 
 namespace subvol {
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "subvol/overlay.h"
 
 namespace subvol {
 
@@ -68,5 +71,13 @@ struct Plot {
 ///
 /// min, max: finite, min < max; on a logarithmic axis positive
 [[nodiscard]] std::vector<double> ticks(double min, double max, bool log);
+
+/// Writes a vector graphic as `.svg`, or as a page of `.pdf` of its size with the fonts embedded and without a date. The file
+/// appears whole under its name or not at all.
+///
+/// title:  of the document
+/// throws: Error(InvalidInput) for another extension, Error(Io), Error(MissingCapability) if a .pdf needs the module of cairo
+///         and it is not installed
+void write_vector_graphic(const std::filesystem::path& path, const VectorGraphic& graphic, const std::string& title = {});
 
 }  // namespace subvol

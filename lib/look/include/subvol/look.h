@@ -29,5 +29,4 @@
 #include "subvol/shading.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
-#include "subvol/vector_graphic.h"
 #include "subvol/view_options.h"

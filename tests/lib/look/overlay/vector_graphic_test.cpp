@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/vector_graphic.h"
+#include "subvol/overlay.h"
 
 #include <gtest/gtest.h>
 
