@@ -7,6 +7,7 @@
 //               a surface, or a level set where its distance is 0 ─► surface
 //     shape     the control points move until the limit's boundary is near the surface, if that is asked for
 //     fields    values at the control points by least squares of the limit at the samples
+//     mapping   or the values of the data's cells at the control points, as they are, if --at-points asks for it
 //     output    the control mesh with these values, and the errors at the samples and between them
 //
 // Of a series, each step or frame is fitted onto the same control mesh; one approximator keeps the places of the samples in
@@ -63,6 +64,7 @@ public:
                "  subvol approximate run.pvd --onto coarse.vtu -o 'fitted_####.vtu' --step all\n"
                "  subvol approximate 'smoke_####.vdb' --onto coarse.vtu -o 'fitted_####.vtu' --frames 1-48\n"
                "  subvol approximate scan.stl --shape --onto block.vtu -o fitted.vtu\n"
+               "  subvol approximate result.frd --onto other.inp -o mapped.vtu --at-points\n"
                "\n"
                "Least squares through the limit: a field that is a limit of the control mesh is found again.\n"
                "JSON: samples, between, outside, snapped, unseen, undecided, iterations, refined, continuous, fields {name: "
@@ -70,7 +72,9 @@ public:
                "rms_boundary, max, max_at, range, rms_between, max_between, max_between_at, beyond}, points, cells; of several "
                "steps or frames these are in the list frames, with frame, time and output, "
                "beside placements; with --shape also shape {before, after: rms, max, missed_rms, missed_max and their places; "
-               "rounds, moved_world, volume_world, folds, mended}.") {
+               "rounds, moved_world, volume_world, folds, mended}; with --at-points outside, farthest_world, farthest_at, "
+               "points, "
+               "cells.") {
         add_input(app(), "DATA", input_,
                   "a mesh, a .vdb grid of floats (where it is not active 0, or the background of a level set), a table "
                   "(.csv, .txt) of x, y, z and values, or "
@@ -93,6 +97,10 @@ public:
                 .help("A-B",
                       "a sequence of files: A-B, or N for 1-N. In DATA and --output a row of # is replaced by the number"))
             ->transform(frame_range());
+        add_option(app(),
+                   Option("at-points", at_points_)
+                       .help("no fit: the values of the cells of DATA, a mesh, at the points of the control mesh; outside "
+                             "those of the nearest place"));
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
         CLI::Option* shape = add_option(
@@ -115,11 +123,16 @@ public:
             throw Error(ErrorCode::InvalidInput, "is a folder of bricks", onto_, "a mesh in one piece");
         }
         const std::optional<Sequence> sequence = steps_or_frames(report);
+        if (at_points_) check_mapping();
         MeshSets sets;
         HexMesh onto = cells_ ? mesh_of_box(box_of_grids(sequence, report), *cells_)
                               : report.unpack(load_mesh(onto_, CommonOptions{}, report.progress(), sets));
         report["input"] = input_;
         if (!cells_) report["onto"] = onto_;
+        if (at_points_) {
+            map_all(sequence, onto, sets, options, report);
+            return 0;
+        }
         if (sequence) {
             fit_all(*sequence, std::move(onto), sets, options, report);
             return 0;
@@ -246,6 +259,49 @@ private:
                         counted(approximator.placements(), "time"), " for ",
                         counted(static_cast<std::size_t>(range.count()), sequence.name)));
         report.all_said();
+    }
+
+    void check_mapping() {
+        refuse_options(app(), kOfFields, "is about a fit; --at-points takes the values as they are");
+        refuse_options(app(), {"--scheme", "--tension", "--crease-angle", "--shape", "--cells"},
+                       "is about a fit; --at-points takes the values of the cells as they are");
+        if (is_surface() || kind_of(input_) != InputKind::Mesh)
+            throw Error(ErrorCode::InvalidInput, "has no cells with values between points, which --at-points takes", input_,
+                        "a mesh; or a fit, without --at-points");
+    }
+
+    /// Values of the cells of the data at the points of the control mesh, of each step or frame.
+    void map_all(const std::optional<Sequence>& sequence, const HexMesh& onto, const MeshSets& sets,
+                 const ApproximateOptions& options, Report& report) {
+        const auto map = [&](const std::string& input, const CommonOptions& reading, const std::string& output) {
+            const HexMesh data = read_data(input, reading, onto, options, report);
+            MappedFields mapped = report.timed("map", [&] { return map_fields(onto, data, report.progress()); });
+            report.merge(write_reported(output, mapped.mesh, {}, sets, report.progress()));
+            const MapReport& found = mapped.report;
+            if (found.outside > 0) {
+                const Vec3& at = found.farthest_at;
+                report.warn(text(counted(found.outside, "point"), " of ", onto.points.size(), " lie outside of ", input,
+                                 ", at most ", found.farthest_world, " from it, at ", at.x, ", ", at.y, ", ", at.z,
+                                 ": they have the values of its nearest place"));
+            }
+            return facts_of(found);
+        };
+        report["points"] = onto.points.size();
+        report["cells"] = onto.cells.size();
+        report["output"] = output_;
+        if (!sequence) return report.merge(map(input_, common(), output_));
+        const FrameRange& range = sequence->range;
+        report["frames"] = Json::array();
+        for (int number = range.first; number <= range.last; ++number) {
+            const std::string path = with_number(output_, number);
+            report.begin_part(text(sequence->name, " ", number), static_cast<std::size_t>(number - range.first),
+                              static_cast<std::size_t>(range.count()));
+            Json entry{{"frame", number}};
+            if (!sequence->times.empty()) entry["time"] = sequence->times[static_cast<std::size_t>(number)];
+            entry.update(json_of(map(sequence->input(number), sequence->options(number), path)));
+            entry["output"] = path;
+            report["frames"].push_back(std::move(entry));
+        }
     }
 
     /// A .ply file has kernels, unless its shape is asked for; so has a grid fields.
@@ -388,7 +444,7 @@ private:
     RefineArguments scheme_;
     ApproximateOptions options_;
     FitShapeOptions shaping_;
-    bool shape_ = false;
+    bool shape_ = false, at_points_ = false;
     bool is_sound_ = true;  // the shape that was fitted
 };
 

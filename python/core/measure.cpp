@@ -514,6 +514,11 @@ py::tuple approximate_of(const HexMesh& onto, const py::object& points, const py
     return py::make_tuple(std::move(made.mesh), dict_of(facts_of(made.report)));
 }
 
+py::tuple map_fields_of(const HexMesh& onto, const HexMesh& data, const py::object& progress) {
+    MappedFields mapped = result_of(progress, [&](Progress* listener) { return map_fields(onto, data, listener); });
+    return py::make_tuple(std::move(mapped.mesh), dict_of(facts_of(mapped.report)));
+}
+
 /// An Approximator keeps what it found for the next step, so that its steps come one after the other: a second thread, or a
 /// call from within its own progress, is refused.
 class StepFitter {
@@ -593,6 +598,7 @@ py::tuple read_triangles(const std::string& path) {
 void bind_measure(py::module_& module) {
     module.def("approximate", &approximate_of, py::arg("onto"), py::arg("points"), py::arg("fields"), py::arg("progress"));
     describe_call<ApproximateOptions>(module, "approximate");
+    module.def("map_fields", &map_fields_of, py::arg("onto"), py::arg("data"), py::arg("progress"));
     py::class_<StepFitter>(module, "Approximator")
         .def(py::init<const HexMesh&, const py::kwargs&>(), py::arg("onto"))
         .def("fit", &StepFitter::fit, py::arg("points"), py::arg("fields"), py::arg("progress"));

@@ -11,7 +11,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, from_vtk, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
-from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, approximate, approximate_series, check_folds, check_folds_between, control_mesh, fit_shape, measure, mend_folds, points_error, probe, read_surface, slice, streamlines, surface
+from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, approximate, approximate_series, check_folds, check_folds_between, control_mesh, fit_shape, map_fields, measure, mend_folds, points_error, probe, read_surface, slice, streamlines, surface
 from ._mesh import Series, model, models, only, open_series, quantity, read_mesh, subdivide, warp, write_mesh, write_series, write_wavelets
 from ._page import Page, page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, mesh_difference, read_image, render, write_image
@@ -30,7 +30,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "check_folds_between", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
+    "map_fields", "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_series", "write_usd", "write_vdb", "write_wavelets",
 ]

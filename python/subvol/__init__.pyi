@@ -10,7 +10,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista, to_vtk
 from ._fields import LimitSamples, as_field, evaluate
-from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, read_surface
+from ._measure import FoldCheck, PointsError, ProbeSamples, Slice, StreamlineSet, SurfaceMesh, map_fields, read_surface
 from ._mesh import Series, model, models, only, open_series, quantity, warp, write_mesh
 from ._page import Page
 from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, write_image
@@ -20,7 +20,7 @@ from ._vdb import Grid, read_vdb, sample_grid, write_usd
 from ._arguments import Kernel, Path
 from ._pictures import Drawable
 from ._progress import Progress
-from .reports import ApproximateReport, ControlMeshReport, DifferenceReport, FieldError, FieldMeasure, FoldFigures, GridReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
+from .reports import ApproximateReport, ControlMeshReport, DifferenceReport, FieldError, FieldMeasure, FoldFigures, GridReport, MapReport, MendReport, MeshReport, PartMeasure, PatchMeasure, ReduceReport, SeriesReport, ShapeError, ShapeReport, SurfaceReport, VolumeMeasure, WaveletReport
 
 __version__: str
 
@@ -835,7 +835,7 @@ __all__ = [
     "InvalidInput", "LimitSamples", "MissingCapability", "Page", "PointsError", "ProbeSamples", "RbfVolume", "Refinement", "Series",
     "Slice", "StreamlineSet", "Study", "StudyCase", "StudyResults", "SubvolWarning", "SurfaceMesh", "TransferFunction", "approximate", "approximate_series", "as_field", "check_folds", "check_folds_between", "compare",
     "compare_fields", "compare_images", "control_mesh", "evaluate", "evaluate_limit", "fit", "fit_shape", "from_meshio", "from_pyvista", "from_vtk", "gl_devices", "kernels",
-    "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
+    "map_fields", "measure", "mend_folds", "mesh_difference", "model", "models", "only", "open_series", "page", "points_error", "probe", "quantity", "rasterize", "read_image", "read_mesh", "read_points", "read_surface",
     "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "slice", "streamlines", "studies", "study", "subdivide",
     "surface", "to_meshio", "to_pyvista", "to_vtk", "warp", "write_image", "write_mesh", "write_points", "write_series", "write_usd", "write_vdb", "write_wavelets",
 ]

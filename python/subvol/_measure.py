@@ -17,7 +17,7 @@ from ._errors import InvalidInput
 from ._options import described, returns_by
 from ._points import _selected
 from ._progress import Progress, listening
-from .reports import ApproximateReport, ControlMeshReport, MendReport, ShapeReport, SurfaceReport
+from .reports import ApproximateReport, ControlMeshReport, MapReport, MendReport, ShapeReport, SurfaceReport
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,20 @@ def approximate(onto: HexMesh, samples: Union[HexMesh, npt.ArrayLike], fields: O
         if isinstance(samples, HexMesh):
             return _core.approximate(onto, samples, samples.fields if fields is None else fields, listener, **options)
         return _core.approximate(onto, samples, fields or {}, listener, **options)
+
+
+def map_fields(onto: HexMesh, data: HexMesh, *, progress: Progress = None) -> tuple[HexMesh, MapReport]:
+    """The fields of one mesh at the points of another: trilinear in the cells of the data as they are, without a limit and without a fit.
+
+    Points outside of the data have the values of the nearest place of its boundary; a warning says how many there are, and the report has
+    outside, farthest_world (the largest distance) and farthest_at.
+    """
+    with listening(progress) as listener:
+        mapped, report = _core.map_fields(onto, data, listener)
+    if report["outside"]:
+        warn(f"{report['outside']} of {len(onto.points)} points lie outside of the data, at most {report['farthest_world']:.4g} from it: "
+             "they have the values of its nearest place")
+    return mapped, report
 
 
 @described

@@ -10,7 +10,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["ApproximateReport", "ControlMeshReport", "DifferenceReport", "FieldError", "FieldMeasure", "FoldFigures", "GridReport", "MendReport", "MeshReport", "PartMeasure",
+__all__ = ["ApproximateReport", "ControlMeshReport", "DifferenceReport", "FieldError", "FieldMeasure", "FoldFigures", "GridReport", "MapReport", "MendReport", "MeshReport", "PartMeasure",
            "PatchMeasure", "ReduceReport", "SeriesReport", "ShapeError", "ShapeReport", "SurfaceReport", "VolumeMeasure", "WaveletReport"]
 
 Place = tuple[float, float, float]
@@ -156,6 +156,14 @@ class ApproximateReport(_Placements):
     refined: int
     continuous: bool
     fields: dict[str, FieldError]
+
+
+class MapReport(TypedDict):
+    """By `map_fields`."""
+
+    outside: int
+    farthest_world: float
+    farthest_at: list[float]
 
 
 class ShapeError(TypedDict):

@@ -177,6 +177,34 @@ class Approximate(InFolder):
             self.assertEqual(done.code, 2, done.err)
             self.assertIn(part, done.err)
 
+    def test_values_at_points_are_those_of_the_cells(self):
+        (self.folder / "coarse.vtk").write_text(box_of_cells(2))
+        (self.folder / "fine.vtk").write_text(box_of_cells(5))
+        self.run_ok("subdivide", "coarse.vtk", "--density", "4+x*y-2*z", "-o", "data.vtu", "--levels", "0")
+        found = self.fit("data.vtu", "--onto", "fine.vtk", "-o", "mapped.vtu", "--at-points")
+        self.assertEqual((found["outside"], found["farthest_world"], found["points"]), (0, 0, 216))
+        self.assertEqual(found["warnings"], [])
+        # x y is trilinear in each of the coarse cells, so that it is met at all points.
+        self.run_ok("subdivide", "fine.vtk", "--density", "4+x*y-2*z", "-o", "exact.vtu", "--levels", "0")
+        compared = self.run_ok("compare", "mapped.vtu", "exact.vtu", "--field", "density", "--scheme", "linear", "--json").json()
+        self.assertLess(compared["linf"], 1e-6)
+        # Of a ball the points outside of the box have the values at the nearest place, and are counted.
+        self.run_ok("subdivide", "model:ball:3", "-o", "ball.vtu", "--levels", "0")
+        found = self.fit("data.vtu", "--onto", "ball.vtu", "-o", "ball_of.vtu", "--at-points")
+        self.assertRegex(found["warnings"][-1], rf"{found['outside']} points of {found['points']} lie outside of data.vtu, at most .* nearest place")
+        self.assertGreater(found["outside"], found["points"] / 2)
+        at = self.run_ok("info", "ball_of.vtu", "--json").json()["fields"][0]
+        self.assertGreaterEqual(at["min"], 2)
+        self.assertLessEqual(at["max"], 5)
+        for words, part in ((["--levels", "1"], "--levels: is about a fit"), (["--scheme", "linear"], "--scheme: is about a fit"),
+                            (["--refine", "1"], "--refine: is about a fit")):
+            done = subvol("approximate", "data.vtu", "--onto", "fine.vtk", "-o", "no.vtu", "--at-points", *words, folder=self.folder)
+            self.assertEqual((done.code, part in done.err), (2, True), done.err)
+        (self.folder / "T.csv").write_text("x,y,z,T\n0,0,0,1\n")
+        done = subvol("approximate", "T.csv", "--onto", "fine.vtk", "-o", "no.vtu", "--at-points", folder=self.folder)
+        self.assertEqual((done.code, "T.csv: has no cells" in done.err), (2, True), done.err)
+        self.assertNotIn("no.vtu", self.files())
+
     def test_says_what_is_wrong(self):
         (self.folder / "holes.csv").write_text("x,y,z,T\n0,0,0,1\n0,0,1,\n")
         (self.folder / "T.csv").write_text("x,y,z,T\n0,0,0,1\n")

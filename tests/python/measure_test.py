@@ -253,6 +253,23 @@ def test_a_field_is_approximated():
         subvol.approximate(control, subvol.HexMesh(fine.points, fine.cells))
 
 
+def test_fields_are_mapped_to_the_points_of_another_mesh():
+    data, onto = subvol.model("twist", 4), subvol.model("twist", 3)
+    x = data.points
+    data = subvol.HexMesh(x, data.cells, {"T": 1 + 2 * x[:, 0] - x[:, 2], "U": x[:, ::-1]})
+    with pytest.warns(subvol.SubvolWarning, match="lie outside of the data"):
+        mapped, report = subvol.map_fields(onto, data)
+    assert mapped.fields["U"].shape == onto.points.shape
+    off = np.abs(mapped.fields["T"] - (1 + 2 * onto.points[:, 0] - onto.points[:, 2])) > 1e-6
+    assert off.sum() <= report["outside"] < len(onto.points) / 2  # linear inside
+    assert np.abs(mapped.fields["U"] - onto.points[:, ::-1]).max() <= report["farthest_world"] + 1e-12
+    same, report = subvol.map_fields(data, data)
+    assert report["outside"] == 0
+    np.testing.assert_allclose(same.fields["T"], data.fields["T"], atol=1e-12)
+    with pytest.raises(subvol.InvalidInput, match="no field"):
+        subvol.map_fields(onto, onto.__class__(onto.points, onto.cells))
+
+
 def test_the_steps_of_a_series_are_approximated(tmp_path):
     control, files = subvol.model("twist", 2), []
     for k in range(3):

@@ -100,6 +100,31 @@ struct Approximation {
 ///          `levels` of 2, eight times as much with each level more. Parallel, the same bits for any number of threads
 [[nodiscard]] Approximation approximate(const HexMesh& onto, const HexMesh& samples, const ApproximateOptions& options = {});
 
+/// How the points of a mesh lie in the data whose fields they were given.
+struct MapReport {
+    std::size_t outside =
+        0;  ///< points outside of the cells of the data, which have the values of the nearest place of its boundary
+    double farthest_world = 0;                                   ///< the largest distance from there
+    Vec3 farthest_at{std::numeric_limits<double>::quiet_NaN()};  ///< the point of that distance
+};
+
+/// The report under its members' names.
+[[nodiscard]] Facts facts_of(const MapReport& report);
+
+struct MappedFields {
+    HexMesh mesh;
+    MapReport report;
+};
+
+/// The fields of a mesh at the points of another one: trilinear in the cells of the data as they are, without a limit and
+/// without a fit. A linear function of places is met, and so are the data's own values where the points are its own.
+///
+/// onto:   its attributes are left out
+/// data:   with attributes
+/// throws: Error(InvalidInput) if the data has no cells or no attributes, or no point lies in it; Error(Cancelled)
+/// cost:   some µs a point, and 1.5 kB for each cell of the data; parallel, the same bits for any number of threads
+[[nodiscard]] MappedFields map_fields(HexMesh onto, const HexMesh& data, Progress* progress = nullptr);
+
 /// Places of the limit in each cell, per_edge³ of them at the middles of equal parts: where a function of the world can be
 /// sampled.
 [[nodiscard]] std::vector<Vec3> places_in_cells(const HexMesh& mesh, int per_edge, const LimitOptions& options = {});

@@ -38,6 +38,39 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
     return a.size() == b.size() ? most : INFINITY;
 }
 
+// Trilinear in the cell that a point is in, by hand; outside the value at the nearest place of a box.
+TEST(Approximate, MapsTheValuesOfCellsToPoints) {
+    HexMesh data = make_box(2, 1, 1);
+    const auto linear = [](const Vec3& x) { return 1 + 2 * x.x - 3 * x.y + 0.5 * x.z; };
+    Attribute corner{.name = "corner", .channels = 1, .values = {}}, both{.name = "both", .channels = 2, .values = {}};
+    for (const Vec3& x : data.points) {
+        corner.values.push_back(x == Vec3(2, 1, 1) ? 8 : 0);
+        both.values.insert(both.values.end(), {linear(x), -linear(x)});
+    }
+    data.attributes = {corner, both};
+    HexMesh onto = make_box(1, 1, 1);
+    onto.points = {{0.3, 0.2, 0.9}, {1.5, 0.5, 0.5}, {2, 1, 1},      {1, 0.25, 0.5},
+                   {-1, 0.5, 0.5},  {3, 2, 3},       {1, 1.25, 0.5}, {1.75, 0.5, -0.1}};
+    onto.attributes = {{.name = "old", .channels = 1, .values = std::vector<double>(8)}};
+    const MappedFields mapped = map_fields(onto, data);
+    ASSERT_EQ(mapped.mesh.attributes.size(), 2U);
+    const std::vector<double> corners{0, 8 * .5 * .5 * .5, 8, 0, 0, 8, 0, 0};
+    for (std::size_t p = 0; p < onto.points.size(); ++p) {
+        const Vec3 nearest = glm::clamp(onto.points[p], Vec3(0.0), Vec3(2, 1, 1));
+        EXPECT_NEAR(mapped.mesh.attributes[0].values[p], corners[p], 1e-9) << p;
+        EXPECT_NEAR(mapped.mesh.attributes[1].values[2 * p], linear(nearest), 1e-9) << p;
+        EXPECT_NEAR(mapped.mesh.attributes[1].values[2 * p + 1], -linear(nearest), 1e-9) << p;
+    }
+    EXPECT_EQ(mapped.report.outside, 4U);
+    EXPECT_NEAR(mapped.report.farthest_world, std::sqrt(1 + 1 + 4), 1e-12);
+    EXPECT_EQ(mapped.report.farthest_at, Vec3(3, 2, 3));
+    EXPECT_THAT(error_of([&] { (void)map_fields(onto, HexMesh{}); }), HasSubstr("no cells"));
+    for (Vec3& x : onto.points) x += Vec3(9);
+    EXPECT_THAT(error_of([&] { (void)map_fields(onto, data); }), HasSubstr("no point of the mesh lies in the data"));
+    data.attributes.clear();
+    EXPECT_THAT(error_of([&] { (void)map_fields(onto, data); }), HasSubstr("no field"));
+}
+
 TEST(Approximate, FindsALimitAgain) {
     for (const HexMesh& bare : {make_model("twist", 4), make_model("ball", 2), test::irregular()}) {
         const HexMesh control = with_noise(bare, 3);
