@@ -48,6 +48,9 @@ struct CellCounts {
 /// What is said of a mesh that was split into hexahedra. tets_cut: as in HexSplit; children: the hexahedra
 [[nodiscard]] std::string split_report(const CellCounts& counts, std::size_t tets_cut, std::size_t children);
 
+/// The points of a cell.
+[[nodiscard]] std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell);
+
 /// Whether the Jacobian is negative at a corner of a hexahedron.
 [[nodiscard]] bool is_folded(const std::array<Vec3, 8>& corners);
 

@@ -50,7 +50,7 @@ struct ForeignFile {
 
 /// What to convert of a file: one step (nothing: the last one), or none, if only the times are asked for.
 struct ForeignRequest {
-    std::optional<std::size_t> step;
+    std::optional<std::size_t> step{};
     bool only_times = false;
 };
 
