@@ -4,6 +4,7 @@
 //
 //     SUBVOL_FAIL=write:17    the 17th call that writes fails with "no space left on device"
 //     SUBVOL_FAIL=alloc:3+    the 3rd allocation fails, and all after it
+//     SUBVOL_FAIL=alloc@libz.so:1   the 1st allocation that a function of this library makes itself fails
 //     SUBVOL_FAIL=read:0      nothing fails
 //     SUBVOL_FAIL_REPORT=F    at the end F holds the number of such calls, and the stack of the first one that failed
 //
@@ -75,6 +76,7 @@ const Kind* kind = nullptr;
 long fail_at = 0;  // 0: never
 bool fail_on = false;
 bool fail_allocations = false;
+const char* library = nullptr;  // null: any
 std::atomic<long> calls{0};
 std::atomic<bool> reported{false};
 int listener = -1;
@@ -103,9 +105,16 @@ void report(long number) {
     is_ours = false;
 }
 
-/// Whether an allocation is to fail.
-bool allocation_fails() {
-    if (!fail_allocations || is_ours) return false;
+/// Whether a function is in the library whose allocations are to fail.
+bool is_in_library(const void* function) {
+    if (library == nullptr) return true;
+    Dl_info about{};
+    return dladdr(function, &about) != 0 && std::strstr(about.dli_fname, library) != nullptr;
+}
+
+/// Whether an allocation is to fail. caller: the instruction after its call
+bool allocation_fails(const void* caller) {
+    if (!fail_allocations || is_ours || !is_in_library(caller)) return false;
     if (!fails(++calls)) return false;
     if (!reported.exchange(true)) report(0);
     errno = ENOMEM;
@@ -183,8 +192,14 @@ bool read_task() {
     const char* const text = std::getenv("SUBVOL_FAIL");
     const char* const colon = text == nullptr ? nullptr : std::strchr(text, ':');
     if (colon == nullptr) return false;
+    static char name[64];
+    const char* const at = std::strchr(text, '@');
+    if (at != nullptr && at < colon) {
+        std::snprintf(name, sizeof(name), "%.*s", static_cast<int>(colon - at - 1), at + 1);
+        library = name;
+    }
+    const auto length = static_cast<std::size_t>((library == nullptr ? colon : at) - text);
     for (const Kind& one : kKinds) {
-        const auto length = static_cast<std::size_t>(colon - text);
         if (std::strlen(one.name) == length && std::strncmp(one.name, text, length) == 0) kind = &one;
     }
     char* end = nullptr;
@@ -226,19 +241,19 @@ int __libc_start_main(int (*program)(int, char**, char**), int argc, char** argv
 }
 
 void* malloc(std::size_t bytes) {
-    return allocation_fails() ? nullptr : __libc_malloc(bytes);
+    return allocation_fails(__builtin_return_address(0)) ? nullptr : __libc_malloc(bytes);
 }
 
 void* calloc(std::size_t count, std::size_t bytes) {
-    return allocation_fails() ? nullptr : __libc_calloc(count, bytes);
+    return allocation_fails(__builtin_return_address(0)) ? nullptr : __libc_calloc(count, bytes);
 }
 
 void* realloc(void* block, std::size_t bytes) {
-    return allocation_fails() ? nullptr : __libc_realloc(block, bytes);
+    return allocation_fails(__builtin_return_address(0)) ? nullptr : __libc_realloc(block, bytes);
 }
 
 void* memalign(std::size_t alignment, std::size_t bytes) {
-    return allocation_fails() ? nullptr : __libc_memalign(alignment, bytes);
+    return allocation_fails(__builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, bytes);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t bytes) {

@@ -29,7 +29,8 @@ exec cat > "${last#file:}"
 """
 
 # The same input gives the same bytes.
-SAME_BYTES = {".vtu", ".vtkhdf", ".mesh", ".ply", ".vtp", ".svk", ".svw", ".svshare", ".usda", ".glb", ".npz", ".nvdb", ".png", ".exr", ".svg", ".mp4"}
+SAME_BYTES = {".vtu", ".vtkhdf", ".mesh", ".ply", ".vtp", ".svk", ".svw", ".svshare", ".usda", ".glb", ".npz", ".nvdb", ".png", ".exr",
+              ".svg", ".mp4"}
 
 # The surface of a cube, as `mesh` reads it.
 CUBE = """v 0 0 0
@@ -171,8 +172,8 @@ def small_commands(inputs):
         Command("model .vtkhdf", "model ball --resolution 2 -o a.vtkhdf"),
         Command("info", "info model:ball:2", quick=True),
         Command("info of a file", f"info {inputs}/a.vtu"),
-        Command("mesh", f"mesh {inputs}/cube.obj -o a.vtu --cells 2 --rounds 1"),
-        Command("approximate", f"approximate {inputs}/fine.vtu --onto model:ball:2 -o a.vtu"),
+        Command("mesh", f"mesh {inputs}/cube.obj -o a.vtu --cells 2 --rounds 1", slow=True),
+        Command("approximate", f"approximate {inputs}/fine.vtu --onto model:ball:2 -o a.vtu", slow=True),
         Command("check --mend", "check model:ball:2 --mend -o a.vtu"),
         Command("subdivide", "subdivide model:ball:2 -o a.vtu --levels 1"),
         Command("fit", "fit --kernel gaussian --level 2"),
