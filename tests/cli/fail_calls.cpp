@@ -73,7 +73,7 @@ constexpr Kind kKinds[] = {
 
 int (*real_main)(int, char**, char**) = nullptr;
 const Kind* kind = nullptr;
-long fail_at = 0;  // 0: never
+std::atomic<long> fail_at{0};  // 0: never
 bool fail_on = false;
 bool fail_allocations = false;
 const char* library = nullptr;  // null: any
@@ -149,6 +149,7 @@ void* answer(void*) {
         answer.id = call.id;
         const bool is_failure = counts(call) && fails(++calls);
         if (is_failure) {
+            if (call.data.nr == SYS_close) close(static_cast<int>(call.data.args[0]));  // Linux closes it even if that fails
             answer.error = -kind->error;
         } else {
             answer.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;
@@ -232,6 +233,15 @@ int main_with_failures(int argc, char** argv, char** environment) {
 }  // namespace
 
 extern "C" {
+
+/// For programs that load this library and call it: from now on the call of that number fails (0: none). Returns the number of
+/// calls since it was called last.
+[[gnu::visibility("default")]] long fail_next_call(long number) {
+    fail_at = 0;
+    const long before = calls.exchange(0);
+    fail_at = number;
+    return before;
+}
 
 int __libc_start_main(int (*program)(int, char**, char**), int argc, char** argv, void (*start)(), void (*finish)(),
                       void (*loader)(), void* stack) {

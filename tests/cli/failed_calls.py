@@ -16,6 +16,7 @@ import concurrent.futures
 import os
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -30,9 +31,14 @@ KINDS = ("alloc", "write", "read", "open", "rename", "sync", "close", "map", "th
 SKIPPED = 77
 QUIET_S = 20  # seconds without any work of the processor, after which a program hangs
 MOST_CPU_S = 300
+HANGS_IN_LIBRARY = "hangs when liblog4cplus is loaded"
 
 # Libraries that crash, or print, when they are short of memory: nothing outside of them can prevent it.
 OF_LIBRARIES = {
+    "libblosc": "compresses for OpenVDB; prints that memory is short on standard output, or uses memory that it did not get",
+    "libLLVM": "is loaded with Mesa; ends the program",
+    "libEGL_mesa": "uses memory that it did not get",
+    "swrast_dri": "uses memory that it did not get",
     "libhdf5": "begins its tables of errors and properties without looking whether there is memory, at its first call",
     "libgnutls": "is loaded with HDF5's library and prints that it could not begin",
     "liblog4cplus": "is loaded with OpenVDB, starts a pool of threads when it is loaded, and waits for one that did not start",
@@ -63,7 +69,7 @@ def run(command, folder, call, report=None):
         environment["SUBVOL_FAIL_REPORT"] = str(report)
     process = subprocess.Popen([COMMAND, *command.words], cwd=folder, text=True, errors="replace", env=environment,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
-                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (MOST_CPU_S, MOST_CPU_S)))
+                               start_new_session=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (MOST_CPU_S, MOST_CPU_S)))
     ticks = -1
     while True:
         try:
@@ -71,9 +77,10 @@ def run(command, folder, call, report=None):
         except subprocess.TimeoutExpired:
             before, ticks = ticks, ticks_of(process.pid)
             if ticks == before:
-                process.kill()
+                waits_for_pool = call.startswith("thread") and "liblog4cplus" in Path(f"/proc/{process.pid}/maps").read_text()
+                os.killpg(process.pid, signal.SIGKILL)  # with its children
                 process.communicate()
-                raise Problem("hangs") from None
+                raise Problem(HANGS_IN_LIBRARY if waits_for_pool else "hangs") from None
 
 
 def number_of_calls(command, kind):
@@ -94,22 +101,27 @@ def attempt(command, call):
     with tempfile.TemporaryDirectory() as name, tempfile.TemporaryDirectory() as other:
         folder, report = Path(name), Path(other) / "report"
         put_old_files(command, folder)
-        ended = None
+        ended, outcome, sentence, problem = None, "", "", ""
         try:
             ended = run(command, folder, call, report)
-            codes = {0: "done", 2: "refused", 3: "refused", **({1: "failed cases"} if command.name == "study" else {})}
-            outcome = judge(ended, codes)
-            whole = check_files(command, folder, old=True)
-            if outcome == "done" and not whole:
-                raise Problem("exit code 0, but not all files are there")
+            outcome = judge(ended, {0: "done", 2: "refused", 3: "refused", **({1: "failed cases"} if command.name == "study" else {})})
+            sentence = ended.sentence()
             if outcome == "done" and labels(ended.out) != command.labels:
                 raise Problem(f"exit code 0, but it printed {ended.out[-300:]!r}")
-            return outcome, ended.sentence(), ""
-        except Problem as problem:
-            stack = report.read_text() if report.exists() else ""
-            if any(f"/{library}" in stack for library in OF_LIBRARIES):
-                return "library failed", "", ""
-            return "**failed**", "", f"{problem}" + (f" [code {ended.code}, {ended.err[-200:]!r}]" if ended else "") + f"\n{stack}"
+        except Problem as wrong:
+            problem = str(wrong)
+        stack = report.read_text() if report.exists() else ""
+        if problem == HANGS_IN_LIBRARY or (problem and any(f"/{library}" in stack for library in OF_LIBRARIES)):
+            outcome, problem = "library failed", ""
+        try:
+            whole = check_files(command, folder, old=True)
+            if ended and ended.code == 0 and not whole:
+                raise Problem("exit code 0, but not all files are there")
+        except Problem as wrong:
+            problem = f"{problem} {wrong}"
+        if problem:
+            return "**failed**", "", f"{problem} [code {ended and ended.code}, {ended and ended.err[-200:]!r}]\n{stack}"
+        return outcome, sentence, ""
 
 
 def chosen(first, last, most):
