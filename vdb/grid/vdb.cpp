@@ -82,21 +82,19 @@ namespace {
 
 /// Frees a grid that nobody else holds. OpenVDB allocates when it frees a tree, in a destructor, from which no exception may
 /// come: without memory it would end the program, and Python's interpreter with it. Therefore the tree is emptied before. If
-/// even that fails twice, it is never freed.
+/// that fails, its nodes are in no order, and it is never freed.
 struct FreesGrid {
     openvdb::GridBase::Ptr grid;
 
     void operator()(openvdb::GridBase* /*same*/) noexcept {
         constexpr long kOnlyHere = 1, kHereAndByGrid = 2;
         if (grid.use_count() > kOnlyHere || grid->baseTreePtr().use_count() > kHereAndByGrid) return;
-        for (int tries = 0; tries < 2; ++tries) {
-            try {
-                return grid->clear();
-            } catch (const std::bad_alloc&) {  // the nodes that it has freed are gone, the others are not
-            }
+        try {
+            grid->clear();
+        } catch (const std::bad_alloc&) {
+            alignas(openvdb::GridBase::Ptr) std::array<std::byte, sizeof(openvdb::GridBase::Ptr)> never_freed;
+            new (never_freed.data()) openvdb::GridBase::Ptr(std::move(grid));
         }
-        alignas(openvdb::GridBase::Ptr) std::array<std::byte, sizeof(openvdb::GridBase::Ptr)> never_freed;
-        new (never_freed.data()) openvdb::GridBase::Ptr(std::move(grid));
     }
 };
 
