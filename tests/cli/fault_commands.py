@@ -74,8 +74,12 @@ class Command:
 
     def is_whole(self, name, path, content):
         suffix = path.suffix
+        if suffix in SAME_BYTES and content == self.good[name]:
+            return True
+        if suffix == ".vtkhdf":  # HDF5's library stores a block as it is where it cannot compress it
+            return self.has_same_values(name, path)
         if suffix in SAME_BYTES:
-            return content == self.good[name]
+            return False
         if suffix == ".json":
             return is_json(content)
         if suffix == ".vdb":  # each file has its own random identifier
@@ -83,6 +87,13 @@ class Command:
         if suffix == ".html":
             return content.rstrip().endswith(b"</html>")
         return content.endswith(b"\n")  # tables as text
+
+    def has_same_values(self, name, path):
+        with tempfile.TemporaryDirectory() as other:
+            good = Path(other) / Path(name).name
+            good.write_bytes(self.good[name])
+            done = subprocess.run([COMMAND, "compare", path, good, "--json"], capture_output=True, text=True)
+            return done.returncode == 0 and json.loads(done.stdout)["linf"] == 0
 
 
 def is_json(content):
