@@ -11,6 +11,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <string_view>
 
 #include "subvol/detail/atomic_file.h"
@@ -132,7 +133,51 @@ void on_closed_pipe(int signal) {
     end_now();
 }
 
+constexpr int kEnvironment = 3;
+
+[[noreturn]] void end_after_failure(std::string_view sentence) {
+    hold_other_threads();
+    detail::remove_unfinished_files();
+    write_all(STDERR_FILENO, sentence);
+    _exit(kEnvironment);
+}
+
+[[noreturn]] void on_terminate() {
+    end_after_failure("subvol: a library failed; memory or threads may be short\n");
+}
+
+[[noreturn]] void on_abort(int /*signal*/) {
+    on_terminate();
+}
+
+void on_crash(int signal) {
+    hold_other_threads();
+    detail::remove_unfinished_files();
+    write_all(STDERR_FILENO, "subvol: the program or a library crashed; memory may be short\n");
+    std::signal(signal, SIG_DFL);
+    sigset_t this_one;
+    sigemptyset(&this_one);
+    sigaddset(&this_one, signal);
+    pthread_sigmask(SIG_UNBLOCK, &this_one, nullptr);
+    raise(signal);
+}
+
 }  // namespace
+
+void catch_failures() {
+    std::set_terminate(on_terminate);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they report where it happened
+    std::signal(SIGABRT, on_abort);
+    // A stack that has overflowed has no room for a handler.
+    static std::array<char, std::size_t{1} << 16> memory;
+    const stack_t stack{.ss_sp = memory.data(), .ss_flags = 0, .ss_size = memory.size()};
+    sigaltstack(&stack, nullptr);
+    struct sigaction crash {};
+    crash.sa_handler = on_crash;
+    crash.sa_flags = SA_ONSTACK;
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(signal, &crash, nullptr);
+#endif
+}
 
 void catch_interrupts(bool silent) {
     another_speaks = silent;

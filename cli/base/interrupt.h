@@ -11,6 +11,11 @@ namespace subvol::cli {
 /// without its unfinished files. A `silent` process says nothing when it ends so: another one speaks for all.
 void catch_interrupts(bool silent);
 
+/// After this call a failure that no code can catch ends the program with a sentence and without its unfinished files. An
+/// exception that is thrown where it cannot be caught, and abort(), which libraries call when they are out of memory, end it
+/// with exit code 3. A crash, which is a fault of the program or of a library, still ends it by its signal.
+void catch_failures();
+
 /// After an interrupt the work has this long to stop by itself. Then the program ends in the midst of it, without its
 /// unfinished files.
 inline constexpr int kGrace_ms = 300;

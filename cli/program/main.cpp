@@ -29,6 +29,7 @@
 #include <new>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -39,7 +40,6 @@
 #include "manual.h"
 #include "mistakes.h"
 #include "ranks.h"
-#include "subvol/detail/atomic_file.h"
 #include "subvol/detail/error_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/several_errors.h"
@@ -121,6 +121,13 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     }
 }
 
+/// Whether an exception says that no thread could be started: the standard library's, or TBB's, which has a text alone.
+bool lacks_threads(const std::exception& error) {
+    const auto* const system = dynamic_cast<const std::system_error*>(&error);
+    return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+           std::string_view(error.what()).starts_with("pthread_create");
+}
+
 /// The exception that is being handled as an error, the program's exit code for it, and its parts if it is of several mistakes.
 struct ErrorAtHand {
     Error error;
@@ -141,7 +148,9 @@ ErrorAtHand error_at_hand() {
     } catch (const std::filesystem::filesystem_error& error) {
         return {Error(ErrorCode::InvalidInput, error.what()), kBadInput};
     } catch (const std::exception& error) {  // thrown unexpectedly by a library
-        return {Error(ErrorCode::InvalidInput, error.what()), kEnvironment};
+        if (!lacks_threads(error)) return {Error(ErrorCode::InvalidInput, error.what()), kEnvironment};
+        return {Error(ErrorCode::MissingCapability, "the system cannot start another thread; try fewer with --threads"),
+                kEnvironment};
     }
 }
 
@@ -288,17 +297,10 @@ void keep_standard_streams() {
     }
 }
 
-/// Libraries may throw where exceptions cannot be caught, as OpenVDB does when it frees a grid and memory is short.
-[[noreturn]] void end_with_a_sentence() {
-    subvol::detail::remove_unfinished_files();
-    std::fputs("subvol: a library failed; memory may be short\n", stderr);
-    std::_Exit(kEnvironment);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::set_terminate(end_with_a_sentence);
+    subvol::cli::catch_failures();  // libraries may throw where nothing can catch, as OpenVDB does when it frees a grid
     keep_standard_streams();
     std::setlocale(LC_ALL, "C");          // a library that is loaded before us may have chosen another: numbers have a point
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // we report a lack of OpenGL ourselves, in one sentence

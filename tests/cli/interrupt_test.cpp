@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,6 +56,35 @@ TEST_F(Interrupts, OfManyThreadsAtOnceEndTheProgramOnce) {
             for (;;) pause();
         },
         testing::ExitedWithCode(128 + SIGPIPE), "");
+}
+
+// A process that fails while it writes a file ends with a sentence, and the file is gone.
+class Failures : public test::TempFolder {
+protected:
+    void expect_end(const auto& end, void (*fail)()) {
+        GTEST_FLAG_SET(death_test_style, "fast");
+        EXPECT_EXIT(
+            {
+                catch_failures();
+                const detail::AtomicFile file{path("a.vtu")};
+                fail();
+            },
+            end, "^subvol: [^\n]* memory [^\n]*\n$");
+        EXPECT_EQ(file_count(), 0U);
+    }
+};
+
+TEST_F(Failures, OfLibrariesThatAbortEndWithASentence) {
+    expect_end(testing::ExitedWithCode(3), [] { std::abort(); });
+}
+
+TEST_F(Failures, OfWhatCannotCatchEndWithASentence) {
+    expect_end(testing::ExitedWithCode(3), [] { std::thread([] { throw std::bad_alloc(); }).join(); });
+}
+
+TEST_F(Failures, ThatAreCrashesStayCrashes) {
+    expect_end(testing::KilledBySignal(SIGSEGV), [] { std::raise(SIGSEGV); });
+    expect_end(testing::KilledBySignal(SIGFPE), [] { std::thread([] { std::raise(SIGFPE); }).join(); });
 }
 
 }  // namespace interrupt_test

@@ -4,7 +4,11 @@
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <new>
+#include <utility>
 
 #include "subvol/detail/printable.h"
 #include "subvol/detail/shared_grid.h"
@@ -74,9 +78,31 @@ void detail::set_frame(openvdb::GridBase& grid, const Box& frame) {
     grid.insertMeta(kFrameUpper, openvdb::Vec3DMetadata({frame.upper.x, frame.upper.y, frame.upper.z}));
 }
 
+namespace {
+
+/// Frees a grid that nobody else holds. OpenVDB allocates when it frees a tree, in a destructor, from which no exception may
+/// come: without memory it would end the program, and Python's interpreter with it. Therefore the tree is emptied before. If
+/// that fails, its nodes are in no order, and it is never freed.
+struct FreesGrid {
+    openvdb::GridBase::Ptr grid;
+
+    void operator()(openvdb::GridBase* /*same*/) noexcept {
+        constexpr long kOnlyHere = 1, kHereAndByGrid = 2;
+        if (grid.use_count() > kOnlyHere || grid->baseTreePtr().use_count() > kHereAndByGrid) return;
+        try {
+            grid->clear();
+        } catch (const std::bad_alloc&) {
+            alignas(openvdb::GridBase::Ptr) std::array<std::byte, sizeof(openvdb::GridBase::Ptr)> never_freed;
+            new (never_freed.data()) openvdb::GridBase::Ptr(std::move(grid));
+        }
+    }
+};
+
+}  // namespace
+
 detail::VdbData::VdbData(const openvdb::GridBase::Ptr& from)
-    : grid(from),
-      floats(openvdb::gridPtrCast<openvdb::FloatGrid>(from)),
+    : grid(from.get(), FreesGrid{from}),
+      floats(openvdb::gridPtrCast<openvdb::FloatGrid>(grid)),
       is_level_set(floats && floats->getGridClass() == openvdb::GRID_LEVEL_SET),
       report_{.name = printable(grid->getName()),
               .kind = {},

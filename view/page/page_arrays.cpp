@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
+
+#include "subvol/detail/vtu_bytes.h"
 
 namespace subvol::detail {
 
@@ -63,13 +64,7 @@ std::string PageArrays::compressed() const {
 }
 
 std::string deflated(std::string_view bytes) {
-    uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-    std::string result(size, '\0');
-    const int done = compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                               static_cast<uLong>(bytes.size()), 6);
-    if (done != Z_OK) throw std::bad_alloc();  // the only way to fail with room for all of it
-    result.resize(size);
-    return result;
+    return zlib_compressed(bytes, 6);
 }
 
 }  // namespace subvol::detail

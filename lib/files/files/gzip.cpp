@@ -4,6 +4,7 @@
 #include <zlib.h>
 #include <algorithm>
 #include <limits>
+#include <new>
 
 #include "subvol/detail/read_file.h"
 #include "subvol/error.h"
@@ -44,6 +45,7 @@ public:
         stream_.next_out = reinterpret_cast<Bytef*>(text.data() + before);
         stream_.avail_out = static_cast<uInt>(room);
         if (status_ != Z_DATA_ERROR) status_ = inflate(&stream_, Z_NO_FLUSH);
+        if (status_ == Z_MEM_ERROR) throw std::bad_alloc();
         text.resize(before + room - stream_.avail_out);
         return status_ == Z_OK || status_ == Z_STREAM_END;
     }

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "hdf5_functions.h"
@@ -29,9 +30,14 @@ namespace {
 class Handle {
 public:
     Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    ~Handle() {
-        if (id_ >= 0) close_(id_);
+    ~Handle() { (void)shut(); }
+
+    // Closes it now. What was written to a dataset may reach the file only then: false if that failed, or if there is none.
+    [[nodiscard]] bool shut() {
+        const hid_t id = std::exchange(id_, -1);
+        return id >= 0 && close_(id) >= 0;
     }
+
     Handle(const Handle&) = delete;
     Handle& operator=(const Handle&) = delete;
     operator hid_t() const { return id_; }
@@ -348,8 +354,8 @@ hid_t with_groups() {
 
 int make_group(std::int64_t file, const char* path) {
     const Handle made(without_times(H5P_GROUP_CREATE), H5Pclose), links(with_groups(), H5Pclose);
-    const Handle group(H5Gcreate2(file, path, links, made, H5P_DEFAULT), H5Gclose);
-    return group < 0 ? -1 : 0;
+    Handle group(H5Gcreate2(file, path, links, made, H5P_DEFAULT), H5Gclose);
+    return group.shut() ? 0 : -1;
 }
 
 int write(std::int64_t file, const char* path, int type, unsigned rank, const std::uint64_t* lengths, const void* values) {
@@ -365,24 +371,24 @@ int write(std::int64_t file, const char* path, int type, unsigned rank, const st
         if (H5Pset_chunk(properties, static_cast<int>(rank), chunk.data()) < 0) return -1;
         if (H5Pset_shuffle(properties) < 0 || H5Pset_deflate(properties, kDeflate) < 0) return -1;
     }
-    const Handle dataset(H5Dcreate2(file, path, number, space, links, properties, H5P_DEFAULT), H5Dclose);
-    if (dataset < 0) return -1;
-    return H5Dwrite(dataset, number, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0 ? -1 : 0;
+    Handle dataset(H5Dcreate2(file, path, number, space, links, properties, H5P_DEFAULT), H5Dclose);
+    if (dataset < 0 || H5Dwrite(dataset, number, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) return -1;
+    return dataset.shut() ? 0 : -1;
 }
 
 int write_text(std::int64_t file, const char* object, const char* name, const char* text, std::size_t length) {
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
     if (H5Tset_size(type, length) < 0 || H5Tset_strpad(type, H5T_STR_NULLPAD) < 0) return -1;
-    const Handle attribute(H5Acreate_by_name(file, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    return attribute < 0 || H5Awrite(attribute, type, text) < 0 ? -1 : 0;
+    Handle attribute(H5Acreate_by_name(file, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    return attribute < 0 || H5Awrite(attribute, type, text) < 0 || !attribute.shut() ? -1 : 0;
 }
 
 int write_integers(std::int64_t file, const char* object, const char* name, const std::int64_t* values, std::size_t count) {
     const hsize_t length = count;
     const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-    const Handle attribute(
-        H5Acreate_by_name(file, object, name, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    return attribute < 0 || H5Awrite(attribute, H5T_NATIVE_INT64, values) < 0 ? -1 : 0;
+    Handle attribute(H5Acreate_by_name(file, object, name, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Aclose);
+    return attribute < 0 || H5Awrite(attribute, H5T_NATIVE_INT64, values) < 0 || !attribute.shut() ? -1 : 0;
 }
 
 int finish(std::int64_t file) {

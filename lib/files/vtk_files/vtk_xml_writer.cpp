@@ -3,14 +3,13 @@
 
 #include <tbb/parallel_for.h>
 
-#include <zlib.h>
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <vector>
 
 #include "subvol/detail/text_codes.h"
 #include "subvol/detail/text_scanner.h"
+#include "subvol/detail/vtu_bytes.h"
 
 namespace subvol::detail {
 
@@ -19,15 +18,9 @@ namespace {
 constexpr std::size_t kBlock = 1 << 17;  // bytes that are compressed together
 constexpr std::size_t kAtOnce = 32;      // blocks that all threads compress before the next ones are begun
 
+// The fastest level: higher ones gain only a few percent, since the last digits of numbers are mostly noise.
 std::string zipped(std::span<const std::byte> bytes) {
-    uLongf size = compressBound(bytes.size());
-    std::string result(size, '\0');
-    // The fastest level: higher ones gain only a few percent, since the last digits of numbers are mostly noise.
-    [[maybe_unused]] const int done = compress2(reinterpret_cast<Bytef*>(result.data()), &size,
-                                                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_SPEED);
-    assert(done == Z_OK);
-    result.resize(size);
-    return result;
+    return zlib_compressed({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, 1);
 }
 
 }  // namespace

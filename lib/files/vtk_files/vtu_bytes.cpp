@@ -30,7 +30,9 @@ bool unzip(std::string_view bytes, std::string& into) {
     uLongf size = std::max<std::size_t>(into.size(), 1);
     auto* to = into.empty() ? &one : reinterpret_cast<Bytef*>(into.data());
     const auto* from = reinterpret_cast<const Bytef*>(bytes.data());
-    return uncompress(to, &size, from, bytes.size()) == Z_OK && size == into.size();
+    const int done = uncompress(to, &size, from, bytes.size());
+    if (done == Z_MEM_ERROR) throw std::bad_alloc();
+    return done == Z_OK && size == into.size();
 }
 
 constexpr std::uint64_t kMostDictionary = std::uint64_t{128} << 20;  // twice what the strongest preset needs
@@ -42,6 +44,7 @@ bool unpack_lzma(std::string_view bytes, std::string& into) {
     const auto result =
         lzma_stream_buffer_decode(&dictionary_limit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(bytes.data()), &read,
                                   bytes.size(), reinterpret_cast<std::uint8_t*>(into.data()), &written, into.size());
+    if (result == LZMA_MEM_ERROR) throw std::bad_alloc();
     return result == LZMA_OK && written == into.size() && read == bytes.size();
 }
 
@@ -167,10 +170,21 @@ std::optional<std::string_view> LzmaReader::next() {
     while (!stream_->ended && lzma.avail_out == piece_.size()) {
         const lzma_ret result = lzma_code(&lzma, LZMA_FINISH);
         stream_->ended = result == LZMA_STREAM_END;
+        if (result == LZMA_MEM_ERROR) throw std::bad_alloc();
         if (result != LZMA_OK && !stream_->ended) return std::nullopt;
     }
     if (stream_->ended && lzma.avail_in > 0) return std::nullopt;
     return std::string_view(piece_).substr(0, piece_.size() - lzma.avail_out);
+}
+
+std::string zlib_compressed(std::string_view bytes, int level) {
+    uLongf size = compressBound(bytes.size());
+    std::string result(size, '\0');
+    const int done = compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                               bytes.size(), level);
+    if (done != Z_OK) throw std::bad_alloc();  // the only way to fail with room for all of it
+    result.resize(size);
+    return result;
 }
 
 std::string compressed_numbers(std::string_view bytes, Effort effort) {

@@ -40,7 +40,14 @@ enum class Compressor { None, Zlib, Lzma, Lz4 };
 [[nodiscard]] std::size_t largest_size(Compressor compressor, std::size_t compressed);
 
 /// Decompresses a block. Nothing if the bytes are damaged or if their decompressed size is not `size`.
+///
+/// throws: std::bad_alloc if memory is short: the bytes may be sound
 [[nodiscard]] std::optional<std::string> decompressed(Compressor compressor, std::string_view bytes, std::size_t size);
+
+/// Compresses bytes as `decompressed` with Compressor::Zlib expects them. level: from 1, the fastest, to 9
+///
+/// throws: std::bad_alloc
+[[nodiscard]] std::string zlib_compressed(std::string_view bytes, int level);
 
 /// Decompresses what `compressed_numbers` has made piece by piece, so that no more is in memory than what has been asked for.
 class LzmaReader {
@@ -48,7 +55,7 @@ public:
     explicit LzmaReader(std::string_view bytes);
 
     /// The next bytes, which are valid until the next call; empty at the end, after the checksum has been compared. Nothing if
-    /// the bytes are damaged.
+    /// the bytes are damaged. throws: std::bad_alloc
     [[nodiscard]] std::optional<std::string_view> next();
 
 private:
@@ -64,6 +71,8 @@ private:
 enum class Effort { Least, Most };
 
 /// Bytes that `decompressed` with Compressor::Lzma turns back, with a checksum: small numbers, most of them 0, become smallest.
+///
+/// throws: std::bad_alloc
 [[nodiscard]] std::string compressed_numbers(std::string_view bytes, Effort effort = Effort::Most);
 
 }  // namespace subvol::detail
