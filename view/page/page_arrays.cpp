@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page_arrays.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
 
