@@ -132,6 +132,7 @@ private:
                 point.middle[axis] = double{kCells} * block.at[a] + static_cast<double>(local[a]) + 0.5;
             }
             point.next.fill(kNone);
+            for (std::size_t n = 0; n < 8; ++n) point.materials[n] = materials_[lowest + voxel(n & 1, n >> 1 & 1, n >> 2)];
         }
     }
 
@@ -179,8 +180,8 @@ private:
                     net_.points[own].next[2 * axis + 1] = other;
                     net_.points[other].next[2 * axis] = own;
                     if (kinds > 2) {
-                        net_.points[own].junctions |= static_cast<std::uint8_t>(1U << (2 * axis + 1));
-                        net_.points[other].junctions |= static_cast<std::uint8_t>(1U << (2 * axis));
+                        net_.points[own].lines |= static_cast<std::uint8_t>(1U << (2 * axis + 1));
+                        net_.points[other].lines |= static_cast<std::uint8_t>(1U << (2 * axis));
                     }
                 }
                 if (materials_[lowest] == materials_[above]) continue;

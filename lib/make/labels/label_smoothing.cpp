@@ -2,8 +2,8 @@
 // Smooth walls between labels that stay within half a voxel of where the voxels have them.
 //
 // A round is nearly one of [taubin1995]: points move towards the mean of those beside them, and then away from it by nine
-// tenths of that, so that steps of voxels vanish while longer waves remain. A point where three materials meet
-// looks at those beside it on the same line alone: walls do not pull lines inwards, and a body's rim stays sharp.
+// tenths of that, so that steps of voxels vanish while longer waves remain. A point where three materials meet, or on a
+// sharp edge, looks at those beside it on the same line alone: walls do not pull lines inwards, and a body's rim stays sharp.
 //
 // Then the volumes are met as by pressures: with a pressure p in each material, 0 outside, a wall between a and b moves by
 // (p_a − p_b) along its normal. What that does to the volumes is linear near the walls,
@@ -35,16 +35,17 @@ Vec3 clamped_move(const Vec3& move) {
     return glm::min(glm::max(move, Vec3(-kMostMove)), Vec3(kMostMove));
 }
 
-/// The directions in which points beside a point count.
+/// The directions in which points beside a point count; none: it stays where it is.
 std::uint8_t directions_of(const LabelNet::Point& point) {
-    std::uint8_t all = 0;
-    int junctions = 0;
+    std::uint8_t all = 0, opposite = 0;
+    int lines = 0;
     for (unsigned d = 0; d < 6; ++d) {
-        if (point.next[d] == kNone) continue;
-        all |= static_cast<std::uint8_t>(1U << d);
-        junctions += point.junctions >> d & 1;
+        if (point.next[d] != kNone) all |= static_cast<std::uint8_t>(1U << d);
+        lines += point.lines >> d & 1;
+        if ((point.lines >> d & 1) != 0 && (point.lines >> (d ^ 1) & 1) != 0) opposite |= static_cast<std::uint8_t>(1U << d);
     }
-    return junctions > 1 ? point.junctions : all;
+    if (lines < 2) return all;
+    return lines == 2 ? point.lines : opposite;  // where several meet, only one that goes on counts
 }
 
 Vec3 mean_beside(const LabelNet& net, Index p, std::uint8_t directions, const std::vector<Vec3>& moves) {

@@ -189,10 +189,11 @@ LabelSurfaces label_surfaces(const LabelGrid& grid, const LabelOptions& given) {
         volumes.push_back(static_cast<double>(counts.at(material.label)));
     }
     report_progress(options.progress, "walls of labels", 0);
-    const LabelNet net = label_net(grid, [&](std::int32_t label) {
+    LabelNet net = label_net(grid, [&](std::int32_t label) {
         const auto found = numbers.find(label);
         return found == numbers.end() ? 0U : found->second;
     });
+    mark_sharp_edges(net);
     const std::vector<Vec3> places = smoothed_places(net, options.smooth, volumes, options.progress);
     const double voxel = std::abs(glm::determinant(grid.to_world()));
     const std::vector<double> enclosed = volumes_of(net, places, materials.size());

@@ -39,12 +39,13 @@ struct LabelSurfaces {
 /// The closed surfaces of the labels of a grid, for `control_mesh_of`. Neighbours share their walls.
 ///
 /// There is one point between eight voxels that do not have one label, and a quad between each two neighbours with different
-/// ones. Points are smoothed without leaving the place between their eight voxels, those where three labels meet along the
-/// line of these points alone. Then walls move along their normals until each label has the volume of its voxels.
+/// ones. Points are smoothed without leaving the place between their eight voxels; those where three labels meet, and those of
+/// sharp edges along the axes of the voxels, along the line of these points alone. Other sharp edges are rounded by half a voxel.
+/// Then walls move along their normals until each label has the volume of its voxels.
 ///
 /// throws: Error(InvalidInput) if no voxel has a label, if a label of the options is not there or is twice, or if there would
 ///         be more than 1000 materials; Error(Cancelled)
-/// cost:   8 visits a voxel of blocks with several labels, 100 bytes and some 20 ns a round for a point; points are 1.5 to 2
+/// cost:   8 visits a voxel of blocks with several labels, 200 bytes and some 20 ns a round for a point; points are 1.5 to 2
 ///         for each voxel face between labels. Parallel; the same bits for any number of threads
 /// source: [frisken2022]; we differ: smoothing by [taubin1995], and volumes are kept
 [[nodiscard]] LabelSurfaces label_surfaces(const LabelGrid& grid, const LabelOptions& options = {});
