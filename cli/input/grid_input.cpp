@@ -85,7 +85,8 @@ WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& opti
                        [&](const VdbContents& contents) { return select_grid(contents, options.field, input); });
 }
 
-WithFacts<VdbGrid> load_grid_or_labels(const std::string& input, const CommonOptions& options, bool labels, Progress* progress) {
+WithFacts<VdbGrid> load_grid_or_labels(const std::string& input, const CommonOptions& options, bool labels,
+                                       Progress* progress) {
     return load_chosen(input, progress, [&](VdbContents contents) {
         bool others = false;
         VdbGrid* integers = nullptr;

@@ -32,42 +32,44 @@ namespace {
 class MeshVerb : public Verb {
 public:
     explicit MeshVerb(CLI::App& program)
-        : Verb(program, "mesh", "Make a control mesh whose limit fills closed surfaces, or a part of a grid.",
-               "  subvol mesh part.stl -o part.vtu\n"
-               "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
-               "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
-               "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
-               "  subvol mesh bone.stl skin.stl -o leg.vtu\n"
-               "  subvol mesh scan.vdb -o head.vtu --label 1=skin --label 2=bone\n"
-               "\n"
-               "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
-               "united; holes are spanned by the patch lid. Of several files each is a material, whose cells are a set of the "
-               "file's "
-               "name; what several enclose is of the one that encloses least. Of voxels with integers each label is a material, "
-               "0 is outside. The exit code is 1 if the limit folds or control "
-               "cells are inverted; the mesh is "
-               "written "
-               "all the same.\n"
-               "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
-               "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; reached_part: "
-               "of the surface's area, nearer to the boundary than half a cell; missed_rms, "
-               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, volume_world (that the limit "
-               "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
-               "mended, "
-               "sharp {corners, missed_corners: where chains of sharp edges meet, end or turn, and those without creases; "
-               "curves, "
-               "missed: chains, and those without creases; length_world, missed_length_world, "
-               "creases, rms, max: of the creases from the chains}, features {points, curves, surfaces: the parts of corners, "
-               "of chains' length and of "
-               "the surface's area that the mesh has}, thin {part, thickness_world, at: of the surface about "
-               "parts thinner "
-               "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
-               "lid_sides (of cells, over holes), materials (of several "
-               "files or labels: name, cells, volume_world, enclosed_world), labels (of voxels: name, label, voxels, voxels_world: "
-               "their volume, enclosed_world: by the smooth surface), "
-               "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
-               "{walls, "
-               "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
+        : Verb(
+              program, "mesh", "Make a control mesh whose limit fills closed surfaces, or a part of a grid.",
+              "  subvol mesh part.stl -o part.vtu\n"
+              "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
+              "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
+              "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
+              "  subvol mesh bone.stl skin.stl -o leg.vtu\n"
+              "  subvol mesh scan.vdb -o head.vtu --label 1=skin --label 2=bone\n"
+              "\n"
+              "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
+              "united; holes are spanned by the patch lid. Of several files each is a material, whose cells are a set of the "
+              "file's "
+              "name; what several enclose is of the one that encloses least. Of voxels with integers each label is a material, "
+              "0 is outside. The exit code is 1 if the limit folds or control "
+              "cells are inverted; the mesh is "
+              "written "
+              "all the same.\n"
+              "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
+              "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; reached_part: "
+              "of the surface's area, nearer to the boundary than half a cell; missed_rms, "
+              "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, volume_world (that the limit "
+              "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
+              "mended, "
+              "sharp {corners, missed_corners: where chains of sharp edges meet, end or turn, and those without creases; "
+              "curves, "
+              "missed: chains, and those without creases; length_world, missed_length_world, "
+              "creases, rms, max: of the creases from the chains}, features {points, curves, surfaces: the parts of corners, "
+              "of chains' length and of "
+              "the surface's area that the mesh has}, thin {part, thickness_world, at: of the surface about "
+              "parts thinner "
+              "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
+              "lid_sides (of cells, over holes), materials (of several "
+              "files or labels: name, cells, volume_world, enclosed_world), labels (of voxels: name, label, voxels, "
+              "voxels_world: "
+              "their volume, enclosed_world: by the smooth surface), "
+              "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
+              "{walls, "
+              "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", inputs_,
                   "closed surfaces (.stl, .obj, .ply, .glb), each of a material; a .vdb grid of floats; or voxels with labels "
                   "(.vdb of integers, .vti, .nrrd), each of a material")
@@ -150,8 +152,8 @@ private:
         LabelSurfaces made = report.timed("labels", [&] { return label_surfaces(grid, options); });
         report.merge(facts_of(made.report));
         for (const LabelReport& label : made.report) {
-            report.say(text("label         ", label.label, " (", label.name, "): ", counted(label.voxels, "voxel"),
-                            ", volume ", label.voxels_world, "; its surface encloses ", label.enclosed_world));
+            report.say(text("label         ", label.label, " (", label.name, "): ", counted(label.voxels, "voxel"), ", volume ",
+                            label.voxels_world, "; its surface encloses ", label.enclosed_world));
             constexpr double kMuch = 0.02;
             if (std::abs(label.enclosed_world / label.voxels_world - 1) < kMuch) continue;
             report.warn(text("label ", label.label, " (", label.name, ") has the volume ", label.voxels_world,

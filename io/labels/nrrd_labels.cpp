@@ -42,10 +42,9 @@ const std::map<std::string, NumberType, std::less<>>& nrrd_types() {
         add(NumberType::UInt16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"});
         add(NumberType::Int32, {"int", "signed int", "int32", "int32_t"});
         add(NumberType::UInt32, {"uint", "unsigned int", "uint32", "uint32_t"});
-        add(NumberType::Int64, {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64",
-                                "int64_t"});
-        add(NumberType::UInt64,
-            {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"});
+        add(NumberType::Int64,
+            {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"});
+        add(NumberType::UInt64, {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"});
         add(NumberType::Float32, {"float"});
         add(NumberType::Float64, {"double"});
         return table;
@@ -182,7 +181,8 @@ private:
             for (int k = 0; k < 3; ++k) {
                 const std::size_t comma = inside.find(',');
                 const std::optional<double> number = number_from(inside.substr(0, comma));
-                if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (k == 2)) fail_field(name, needed);
+                if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (k == 2))
+                    fail_field(name, needed);
                 vector[k] = *number;
                 if (k < 2) inside.remove_prefix(comma + 1);
             }

@@ -594,13 +594,14 @@ py::tuple control_mesh(const std::vector<std::tuple<std::string, py::object, py:
     return py::make_tuple(with_sets(std::move(made.mesh), std::move(made.sets)), dict_of(facts_of(made.report)));
 }
 
-/// labels: an array (nx, ny, nz), the last axis fastest; transform: (4, 4), checked, from its indices to the world
-py::tuple control_mesh_of_labels(const py::object& labels, const py::object& transform, const py::object& progress,
+template <class Number>
+using Packed = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+
+/// all: labels (nx, ny, nz), the last axis fastest; rows: (4, 4), from their indices to the world; both are checked
+py::tuple control_mesh_of_labels(const Packed<std::int64_t>& all, const Packed<double>& rows, const py::object& progress,
                                  const py::kwargs& keywords) {
     GivenControlMesh given;
     set_options(keywords_of(given), keywords);
-    const py::array_t<std::int64_t> all = numbers<std::int64_t>(labels, "labels");
-    const py::array_t<double> rows = numbers<double>(transform, "transform");
     // The grid counts the last axis first.
     Mat3 to_world;
     Vec3 origin;

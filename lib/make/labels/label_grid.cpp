@@ -34,7 +34,8 @@ LabelGrid::LabelGrid(const Mat3& to_world, const Vec3& origin) : to_world_(to_wo
         box *= glm::length(to_world[axis]);
     }
     if (!finite || !std::isfinite(box)) {
-        throw Error(ErrorCode::InvalidInput, "a number of their size, their directions or their origin is not finite", "voxels");
+        throw Error(ErrorCode::InvalidInput, "a number of their size, their directions or their origin is not finite",
+                    "voxels");
     }
     if (!(std::abs(glm::determinant(to_world)) > kLeastAngle * box)) {
         throw Error(ErrorCode::InvalidInput, "are flat: an edge has no length, or lies in the plane of the others", "voxels",
@@ -102,8 +103,8 @@ void LabelRows::take(std::span<const std::int64_t> labels) {
 void LabelRows::finish() {
     const std::size_t all = size_[0] * size_[1] * size_[2];
     if (taken_ < all) {
-        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(taken_) + " labels for " + std::to_string(all) + " voxels",
-                    "voxels");
+        throw Error(ErrorCode::InvalidInput,
+                    "there are " + std::to_string(taken_) + " labels for " + std::to_string(all) + " voxels", "voxels");
     }
     if (!layers_.empty()) store();
 }
@@ -115,7 +116,8 @@ void LabelRows::store() {
     for (at[1] = 0; at[1] < blocks(size_[1]); ++at[1]) {
         for (at[0] = 0; at[0] < blocks(size_[0]); ++at[0]) {
             LabelGrid::Voxels voxels{};
-            const std::size_t x = kBlockSide * static_cast<std::size_t>(at[0]), y = kBlockSide * static_cast<std::size_t>(at[1]);
+            const std::size_t x = kBlockSide * static_cast<std::size_t>(at[0]),
+                              y = kBlockSide * static_cast<std::size_t>(at[1]);
             const std::size_t width = std::min(kBlockSide, size_[0] - x), height = std::min(kBlockSide, size_[1] - y);
             for (std::size_t k = 0; k < layers; ++k) {
                 for (std::size_t j = 0; j < height; ++j) {

@@ -191,8 +191,7 @@ private:
                     to[c] += in_c;
                     return point(to);
                 };
-                net_.quads.push_back(
-                    {{at(-1, -1), at(0, -1), at(0, 0), at(-1, 0)}, {materials_[lowest], materials_[above]}});
+                net_.quads.push_back({{at(-1, -1), at(0, -1), at(0, 0), at(-1, 0)}, {materials_[lowest], materials_[above]}});
             }
         }
     }

@@ -26,7 +26,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kMostMove = 0.49;  // voxels, so that points of neighbours do not meet
+constexpr double kMostMove = 0.49;              // voxels, so that points of neighbours do not meet
 constexpr double kShrink = 0.5, kGrow = -0.45;  // less than in [taubin1995], as volumes are kept besides
 constexpr int kMostCorrections = 12;
 constexpr double kNearEnough = 1e-5;  // of a material's volume

@@ -115,7 +115,8 @@ std::vector<Material> chosen_materials(const std::map<std::int32_t, std::size_t>
 }
 
 /// The surfaces of all materials of a net.
-std::vector<Surface> surfaces_of(const LabelNet& net, const std::vector<Vec3>& places, std::size_t count, const LabelGrid& grid) {
+std::vector<Surface> surfaces_of(const LabelNet& net, const std::vector<Vec3>& places, std::size_t count,
+                                 const LabelGrid& grid) {
     const bool mirrored = glm::determinant(grid.to_world()) < 0;
     std::vector<Surface> surfaces(count);
     std::vector<Index> numbers(places.size(), kNone);
@@ -152,13 +153,15 @@ std::vector<Surface> surfaces_of(const LabelNet& net, const std::vector<Vec3>& p
 }  // namespace
 
 std::vector<Option> options_of(LabelOptions& options) {
-    return {Option("label", options.labels)
-                .help("N[=NAME]",
-                      "of labels: one that becomes a material, and the name of its set (label_N without one); all others are "
-                      "outside. Without this option all labels become materials"),
-            Option("smooth", options.smooth)
-                .between(0, 1000)
-                .help("N", "of labels: rounds of smoothing, in which no point leaves the place between its voxels (0: their steps)")};
+    return {
+        Option("label", options.labels)
+            .help("N[=NAME]",
+                  "of labels: one that becomes a material, and the name of its set (label_N without one); all others are "
+                  "outside. Without this option all labels become materials"),
+        Option("smooth", options.smooth)
+            .between(0, 1000)
+            .help("N",
+                  "of labels: rounds of smoothing, in which no point leaves the place between its voxels (0: their steps)")};
 }
 
 Facts facts_of(const std::vector<LabelReport>& labels) {
@@ -201,8 +204,8 @@ LabelSurfaces label_surfaces(const LabelGrid& grid, const LabelOptions& given) {
     LabelSurfaces made;
     for (std::size_t m = 0; m < materials.size(); ++m) {
         made.materials.push_back({materials[m].name, std::move(surfaces[m])});
-        made.report.push_back({materials[m].name, materials[m].label, counts.at(materials[m].label), voxel * volumes[m],
-                               voxel * enclosed[m]});
+        made.report.push_back(
+            {materials[m].name, materials[m].label, counts.at(materials[m].label), voxel * volumes[m], voxel * enclosed[m]});
     }
     return made;
 }

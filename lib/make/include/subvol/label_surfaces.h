@@ -10,10 +10,10 @@
 namespace subvol {
 
 struct LabelOptions {
-    /// The labels that become materials, as "3" or "3=bone"; all others are outside. None: all labels. Without a name a label is
-    /// called label_3
+    /// The labels that become materials, as "3" or "3=bone"; all others are outside. None: all labels. Without a name a label
+    /// is called label_3
     std::vector<std::string> labels{};
-    int smooth = 40;  ///< rounds of smoothing; 0: the steps of the voxels
+    int smooth = 40;                            ///< rounds of smoothing; 0: the steps of the voxels
     OptionNames names = OptionNames::Keywords;  ///< of options in errors
     Progress* progress = nullptr;
 };
@@ -40,8 +40,8 @@ struct LabelSurfaces {
 ///
 /// There is one point between eight voxels that do not have one label, and a quad between each two neighbours with different
 /// ones. Points are smoothed without leaving the place between their eight voxels; those where three labels meet, and those of
-/// sharp edges along the axes of the voxels, along the line of these points alone. Other sharp edges are rounded by half a voxel.
-/// Then walls move along their normals until each label has the volume of its voxels.
+/// sharp edges along the axes of the voxels, along the line of these points alone. Other sharp edges are rounded by half a
+/// voxel. Then walls move along their normals until each label has the volume of its voxels.
 ///
 /// throws: Error(InvalidInput) if no voxel has a label, if a label of the options is not there or is twice, or if there would
 ///         be more than 1000 materials; Error(Cancelled)

@@ -103,7 +103,8 @@ TEST(Labels, BoxesKeepTheirEdgesInAnyFrame) {
     const Mat3 turned(Vec3(0, 2, 0), Vec3(0, 0, 0.5), Vec3(3, 0, 0)), mirrored(Vec3(0, 0, 0.5), Vec3(0, 2, 0), Vec3(3, 0, 0));
     for (const Mat3& frame : {turned, mirrored}) {
         const Vec3 origin(10, -20, 30);
-        const LabelGrid grid = grid_of({20, 16, 12}, [](const Vec3& x) { return x.x < 8 ? 5 : 7; }, frame, origin);
+        const LabelGrid grid = grid_of(
+            {20, 16, 12}, [](const Vec3& x) { return x.x < 8 ? 5 : 7; }, frame, origin);
         const LabelSurfaces made = label_surfaces(grid, {.labels = {"7=right", "5=left"}});
         ASSERT_EQ(made.materials.size(), 2U);
         EXPECT_EQ(made.materials[0].name, "right");
