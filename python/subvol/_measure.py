@@ -245,8 +245,10 @@ def control_mesh(points: Union[npt.ArrayLike, Mapping[str, tuple[npt.ArrayLike, 
     if not isinstance(points, Mapping) and triangles is None:
         labels = np.asarray(points)
         if labels.ndim == 3 and labels.dtype.kind in "iu":
-            if labels.dtype.kind == "u" and labels.size and labels.max() > np.iinfo(np.int64).max:
-                raise InvalidInput("labels: has one above 2^63 (0 outside, and labels from 1 to 2147483647)", "labels", "1 to 2147483647")
+            wrong = (labels < 0) | (labels > 2147483647)
+            if wrong.any():
+                at = tuple(int(i) for i in np.unravel_index(wrong.argmax(), wrong.shape))
+                raise InvalidInput(f"labels: voxel {at} has the label {labels[at]} (0 outside, and labels from 1 to 2147483647)", "labels", "1 to 2147483647")
             placed = _placed(voxel_size, origin, transform)
             with listening(progress) as listener:
                 mesh, report = _core.control_mesh_of_labels(np.ascontiguousarray(labels, np.int64), placed, listener, **options)
