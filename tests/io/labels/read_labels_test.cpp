@@ -48,18 +48,19 @@ protected:
 };
 
 TEST_F(ReadLabels, NrrdHasDirectionsAndAnOrigin) {
-    const LabelGrid grid = read("a.nrrd", nrrd("# a remark\ntype: short\nencoding: ascii\nkey:=type: float\nspace dimension: 3\n"
-                                               "space directions: (0, 2,0) (0.5,0,0)  (0,0,-3)\nspace origin: (1,2,3.5)\n",
-                                               kLabels));
+    const LabelGrid grid =
+        read("a.nrrd", nrrd("# a remark\ntype: short\nencoding: ascii\nkey:=type: float\nspace dimension: 3\n"
+                            "space directions: (0, 2,0) (0.5,0,0)  (0,0,-3)\nspace origin: (1,2,3.5)\n",
+                            kLabels));
     expect_labels(grid);
     EXPECT_EQ(grid.to_world(), Mat3(Vec3(0, 2, 0), Vec3(0.5, 0, 0), Vec3(0, 0, -3)));
     EXPECT_EQ(grid.origin(), Vec3(1, 2, 3.5));
-    const LabelGrid spaced = read("b.nrrd", nrrd("type: uint8\nencoding: raw\nspacings: 1 2 .5\n",
-                                                 std::string("\1\2\0\2\1\1\0\0\0\3\3\1", 12)));
+    const LabelGrid spaced =
+        read("b.nrrd", nrrd("type: uint8\nencoding: raw\nspacings: 1 2 .5\n", std::string("\1\2\0\2\1\1\0\0\0\3\3\1", 12)));
     expect_labels(spaced);
     EXPECT_EQ(spaced.to_world(), Mat3(Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 0.5)));
     std::string big;
-    for (const char label : {1, 2, 0, 2, 1, 1, 0, 0, 0, 3, 3, 1}) big += {'\0', label};
+    for (const char* label = "\1\2\0\2\1\1\0\0\0\3\3\1"; big.size() < 24; ++label) big += {'\0', *label};
     expect_labels(read("c.nrrd", nrrd("type: ushort\r\nendian: big\r\nencoding: raw\r\n", big)));
 }
 
