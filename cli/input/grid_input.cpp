@@ -59,20 +59,48 @@ VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string
                 held(contents));
 }
 
-WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& options, Progress* progress) {
+namespace {
+
+/// choose: the grid among the contents of the file
+template <class Choose>
+WithFacts<VdbGrid> load_chosen(const std::string& input, Progress* progress, const Choose& choose) {
     Facts facts;
     facts["input"] = input;
     if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
-    VdbGrid found =
-        select_grid(facts.timed(progress, "read", [&] { return vdb().read_vdb_contents(input); }), options.field, input);
+    VdbGrid found = choose(facts.timed(progress, "read", [&] { return vdb().read_vdb_contents(input); }));
     const GridReport& grid = found.report();
     if (grid.active_voxels == 0) throw Error(ErrorCode::InvalidInput, "the grid has no active voxels", input);
     facts["field"] = grid.name;
     facts["active_voxels"] = grid.active_voxels;
     facts["voxel_size"] = grid.voxel_size_world;
     return {std::move(found), std::move(facts)};
+}
+
+}  // namespace
+
+WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& options, Progress* progress) {
+    return load_chosen(input, progress,
+                       [&](const VdbContents& contents) { return select_grid(contents, options.field, input); });
+}
+
+WithFacts<VdbGrid> load_grid_or_labels(const std::string& input, const CommonOptions& options, bool labels,
+                                       Progress* progress) {
+    return load_chosen(input, progress, [&](VdbContents contents) {
+        bool others = false;
+        VdbGrid* integers = nullptr;
+        for (VdbGrid& grid : contents.grids) {
+            if (options.field && grid.report().name != *options.field) continue;
+            const std::string& kind = grid.report().kind;
+            others |= kind == "float" || kind == "vector";
+            if (kind == "integer" && integers == nullptr) integers = &grid;
+        }
+        if (integers != nullptr && (labels || !others)) return std::move(*integers);
+        VdbGrid found = select_grid(contents, options.field, input);  // also refuses names that are not there
+        if (!labels) return found;
+        throw Error(ErrorCode::InvalidInput, "has no grid of integers, whose voxels have labels", input, held(contents));
+    });
 }
 
 Box box_of(const GridReport& grid) {

@@ -30,6 +30,13 @@ namespace subvol::cli {
 /// throws: Error(InvalidInput) if it is not a `.vdb` file, has no such grid, or the grid has no active voxels
 [[nodiscard]] WithFacts<VdbGrid> load_grid(const std::string& input, const CommonOptions& options, Progress* progress);
 
+/// The same for a grid of floats or of labels: a grid of integers stays one. Without --field it is the first grid of floats,
+/// else of vectors, else of integers.
+///
+/// labels: only grids of integers
+[[nodiscard]] WithFacts<VdbGrid> load_grid_or_labels(const std::string& input, const CommonOptions& options, bool labels,
+                                                     Progress* progress);
+
 /// The box of the active voxels: that of their centres, and half a voxel more to all sides.
 [[nodiscard]] Box box_of(const GridReport& grid);
 

@@ -18,6 +18,7 @@
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
+#include "subvol/vdb_labels.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
 
@@ -44,6 +45,7 @@ struct VdbFunctions {
     void (*write_vdb_file)(const detail::AtomicFile&, const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);
     std::vector<VdbGrid> (*read_vdb)(const std::filesystem::path&);
     Surface (*grid_surface)(const VdbGrid&, std::optional<double>);
+    LabelGrid (*labels_of_grid)(const VdbGrid&);
     bool (*has_nanovdb)();
     void (*write_nanovdb)(const std::filesystem::path&, std::span<const VdbGrid>);
 

@@ -25,6 +25,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .write_vdb_file = &detail::write_vdb,
         .read_vdb = &read_vdb,
         .grid_surface = &grid_surface,
+        .labels_of_grid = &labels_of_grid,
         .has_nanovdb = &has_nanovdb,
         .write_nanovdb = &write_nanovdb,
         .write_vdb_points = &write_vdb_points,

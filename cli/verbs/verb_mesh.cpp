@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iomanip>
+#include <iterator>
 
 #include "grid_input.h"
 #include "input.h"
@@ -16,7 +18,9 @@
 #include "subvol/detail/missing_file.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
+#include "subvol/label_surfaces.h"
 #include "subvol/option.h"
+#include "subvol/read_labels.h"
 #include "subvol/read_surface.h"
 #include "text.h"
 #include "vdb_functions.h"
@@ -28,41 +32,47 @@ namespace {
 class MeshVerb : public Verb {
 public:
     explicit MeshVerb(CLI::App& program)
-        : Verb(program, "mesh", "Make a control mesh whose limit fills closed surfaces, or a part of a grid.",
-               "  subvol mesh part.stl -o part.vtu\n"
-               "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
-               "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
-               "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
-               "  subvol mesh bone.stl skin.stl -o leg.vtu\n"
-               "\n"
-               "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
-               "united; holes are spanned by the patch lid. Of several files each is a material, whose cells are a set of the "
-               "file's "
-               "name; what several enclose is of the one that encloses least. The exit code is 1 if the limit folds or control "
-               "cells are inverted; the mesh is "
-               "written "
-               "all the same.\n"
-               "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
-               "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; reached_part: "
-               "of the surface's area, nearer to the boundary than half a cell; missed_rms, "
-               "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, volume_world (that the limit "
-               "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
-               "mended, "
-               "sharp {corners, missed_corners: where chains of sharp edges meet, end or turn, and those without creases; "
-               "curves, "
-               "missed: chains, and those without creases; length_world, missed_length_world, "
-               "creases, rms, max: of the creases from the chains}, features {points, curves, surfaces: the parts of corners, "
-               "of chains' length and of "
-               "the surface's area that the mesh has}, thin {part, thickness_world, at: of the surface about "
-               "parts thinner "
-               "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
-               "lid_sides (of cells, over holes), materials (of several "
-               "files: name, cells, volume_world, enclosed_world), "
-               "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
-               "{walls, "
-               "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
+        : Verb(
+              program, "mesh", "Make a control mesh whose limit fills closed surfaces, or a part of a grid.",
+              "  subvol mesh part.stl -o part.vtu\n"
+              "  subvol mesh statue.obj -o statue.vtu --cells 48\n"
+              "  subvol mesh statue.obj -o statue.vtu --cells 16 --refine 1 --tolerance .15\n"
+              "  subvol mesh smoke.vdb -o smoke.vtu --iso .01\n"
+              "  subvol mesh bone.stl skin.stl -o leg.vtu\n"
+              "  subvol mesh scan.vdb -o head.vtu --label 1=skin --label 2=bone\n"
+              "\n"
+              "Sharp edges become creases. A part of the surface within another is the wall of a cavity; parts that cross are "
+              "united; holes are spanned by the patch lid. Of several files each is a material, whose cells are a set of the "
+              "file's "
+              "name; what several enclose is of the one that encloses least. Of voxels with integers each label is a material, "
+              "0 is outside. The exit code is 1 if the limit folds or control "
+              "cells are inverted; the mesh is "
+              "written "
+              "all the same.\n"
+              "JSON: triangles, points, cells, before and after {rms, max, max_at: of the boundary from the surface; "
+              "covered_rms, covered_max: the same but over holes; hole_part: of the boundary's area over holes; reached_part: "
+              "of the surface's area, nearer to the boundary than half a cell; missed_rms, "
+              "missed_max, missed_at: of the surface from the boundary}, rounds, moved_world, volume_world (that the limit "
+              "encloses), enclosed_world (by the surface, where it has no holes and no parts cross), folds (as of check), "
+              "mended, "
+              "sharp {corners, missed_corners: where chains of sharp edges meet, end or turn, and those without creases; "
+              "curves, "
+              "missed: chains, and those without creases; length_world, missed_length_world, "
+              "creases, rms, max: of the creases from the chains}, features {points, curves, surfaces: the parts of corners, "
+              "of chains' length and of "
+              "the surface's area that the mesh has}, thin {part, thickness_world, at: of the surface about "
+              "parts thinner "
+              "than 1.5 cells, looked for if the mesh is not as it should be}, parts, added, refined, divided, side_world, "
+              "lid_sides (of cells, over holes), materials (of several "
+              "files or labels: name, cells, volume_world, enclosed_world), labels (of voxels: name, label, voxels, "
+              "voxels_world: "
+              "their volume, enclosed_world: by the smooth surface), "
+              "min_scaled_jacobian, folded_cells, inverted_cells, open_edges, open_length (of edges of one triangle), surface "
+              "{walls, "
+              "united, cavities, cavities_alike, copies, sheets, turned, one_sided, many_edges}.") {
         add_input(app(), "FILE", inputs_,
-                  "closed surfaces (.stl, .obj, .ply, .glb), each of a material, or a .vdb grid of floats")
+                  "closed surfaces (.stl, .obj, .ply, .glb), each of a material; a .vdb grid of floats; or voxels with labels "
+                  "(.vdb of integers, .vti, .nrrd), each of a material")
             ->required();
         add_option(
             app(),
@@ -73,8 +83,9 @@ public:
                        .help("V", "of a grid: the surface where it has this value (fog: half of its greatest; level sets: 0)"));
         scheme_.add_scheme_to(app());
         add_options(app(), options_of(options_));
-        set_essentials(
-            {"--cells", "--refine", "--tolerance", "--sharp-angle", "--iso", "--scheme", "--keep-folds", "--output", "--json"});
+        add_options(app(), options_of(labels_));
+        set_essentials({"--cells", "--refine", "--tolerance", "--sharp-angle", "--iso", "--label", "--scheme", "--keep-folds",
+                        "--output", "--json"});
     }
 
     int run(Report& report) override {
@@ -88,10 +99,8 @@ public:
         if (inputs_.size() > 1) report["inputs"] = inputs_;
         std::vector<MaterialSurface> materials;
         std::size_t triangles = 0;
-        for (const std::string& input : inputs_) {
-            materials.push_back({std::filesystem::path(input).stem().string(), read(input, report)});
-            triangles += materials.back().surface.triangles.size();
-        }
+        for (const std::string& input : inputs_) std::ranges::move(read(input, report), std::back_inserter(materials));
+        for (const MaterialSurface& material : materials) triangles += material.surface.triangles.size();
         report["triangles"] = triangles;
         const ControlMesh made = report.timed("shape", [&] { return control_mesh_of(materials, options); });
         report.merge(write_reported(output_, made.mesh, {}, made.sets, report.progress()));
@@ -100,24 +109,57 @@ public:
     }
 
 private:
-    [[nodiscard]] Surface read(const std::string& input, Report& report) {
+    [[nodiscard]] std::vector<MaterialSurface> read(const std::string& input, Report& report) {
+        const std::string name = std::filesystem::path(input).stem().string();
+        if (inputs_.size() > 1 && (is_vdb_file(input) || is_label_file(input))) {
+            throw Error(ErrorCode::InvalidInput, "is a grid, which has to be the only file", input,
+                        "an .stl, .obj, .ply or .glb file beside others");
+        }
+        if (is_label_file(input)) {
+            refuse_options(app(), {"--iso"}, "has no effect on labels");
+            return surfaces_of(report.timed("read", [&] { return read_labels(input, common().field); }), report);
+        }
         if (is_vdb_file(input)) {
-            if (inputs_.size() > 1) {
-                throw Error(ErrorCode::InvalidInput, "is a grid; materials have surfaces", input,
-                            "an .stl, .obj, .ply or .glb file");
+            const bool asked = app().count("--label") + app().count("--smooth") > 0;
+            const VdbGrid grid = report.unpack(load_grid_or_labels(input, common(), asked, report.progress()));
+            if (grid.report().kind == "integer" && !iso_) {
+                return surfaces_of(report.timed("read", [&] { return vdb().labels_of_grid(grid); }), report);
             }
-            const VdbGrid grid = report.unpack(load_grid(input, common(), report.progress()));
-            return report.timed("surface", [&] { return vdb().grid_surface(grid, iso_); });
+            refuse_options(app(), {"--label", "--smooth"}, "has no effect with --iso");
+            const VdbGrid floats = vdb().scalar_of(grid, std::nullopt, grid.report().name);
+            std::vector<MaterialSurface> made;
+            made.push_back({name, report.timed("surface", [&] { return vdb().grid_surface(floats, iso_); })});
+            return made;
         }
         if (!is_surface_file(input)) {
             if (!is_model(input)) detail::refuse_missing(input);
             if (detail::names_foreign_surface(input)) detail::refuse_surface(input);
             throw Error(ErrorCode::InvalidInput, "is not a surface", input,
-                        "an .stl, .obj, .ply or .glb file of triangles, or a .vdb grid");
+                        "an .stl, .obj, .ply or .glb file of triangles, a .vdb grid, or labels (.vti, .nrrd)");
         }
         refuse_mesh_options(app(), "needs a grid; this is a surface");
-        refuse_options(app(), {"--field", "--iso"}, "needs a grid; this is a surface");
-        return report.timed("read", [&] { return read_surface(input); });
+        refuse_options(app(), {"--field", "--iso", "--label", "--smooth"}, "needs a grid; this is a surface");
+        std::vector<MaterialSurface> made;
+        made.push_back({name, report.timed("read", [&] { return read_surface(input); })});
+        return made;
+    }
+
+    [[nodiscard]] std::vector<MaterialSurface> surfaces_of(const LabelGrid& grid, Report& report) {
+        refuse_mesh_options(app(), "needs a mesh; this is a grid of labels");
+        LabelOptions options = labels_;
+        options.names = OptionNames::Flags;
+        options.progress = report.progress();
+        LabelSurfaces made = report.timed("labels", [&] { return label_surfaces(grid, options); });
+        report.merge(facts_of(made.report));
+        for (const LabelReport& label : made.report) {
+            report.say(text("label         ", label.label, " (", label.name, "): ", counted(label.voxels, "voxel"), ", volume ",
+                            label.voxels_world, "; its surface encloses ", label.enclosed_world));
+            constexpr double kMuch = 0.02;
+            if (std::abs(label.enclosed_world / label.voxels_world - 1) < kMuch) continue;
+            report.warn(text("label ", label.label, " (", label.name, ") has the volume ", label.voxels_world,
+                             ", and its smooth surface encloses ", label.enclosed_world, ": it is as thin as its voxels"));
+        }
+        return std::move(made.materials);
     }
 
     void put(const ControlMesh& made, Report& report) const {
@@ -180,6 +222,7 @@ private:
     std::optional<double> iso_;
     RefineArguments scheme_;
     ControlMeshOptions options_;
+    LabelOptions labels_;
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What Python asks of the limit of a mesh: probes, integrals, slices, surfaces, streamlines, folds; and what it fits to data:
-// meshes to samples, shapes or surfaces. Most calls have these steps:
+// meshes to samples, shapes or surfaces; control meshes of surfaces and labels. Most calls have these steps:
 //
 //     keywords ─► options     arrays ─► vectors      ─► work on a thread of its own, without the GIL ─► dict of arrays, facts
 //                                                         └─► progress, on the thread of the call
@@ -25,6 +25,7 @@
 #include "subvol/detail/limit_words.h"
 #include "subvol/fit_shape.h"
 #include "subvol/flow_surface.h"
+#include "subvol/label_surfaces.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
@@ -83,8 +84,15 @@ std::vector<Option> keywords_of(FitShapeOptions& options) {
     return scheme_and(options.scheme, options_of(options));
 }
 
-std::vector<Option> keywords_of(ControlMeshOptions& options) {
-    return scheme_and(options.scheme, options_of(options));
+struct GivenControlMesh {
+    ControlMeshOptions mesh{};
+    LabelOptions labels{};
+};
+
+std::vector<Option> keywords_of(GivenControlMesh& given) {
+    std::vector<Option> all = scheme_and(given.mesh.scheme, options_of(given.mesh));
+    std::ranges::move(options_of(given.labels), std::back_inserter(all));
+    return all;
 }
 
 std::vector<Option> keywords_of(PatchOptions& options) {
@@ -575,15 +583,51 @@ py::tuple fit_shape_of(const HexMesh& mesh, const py::object& points, const py::
 
 py::tuple control_mesh(const std::vector<std::tuple<std::string, py::object, py::object>>& surfaces, const py::object& progress,
                        const py::kwargs& keywords) {
-    ControlMeshOptions options;
-    set_options(keywords_of(options), keywords);
+    GivenControlMesh given;
+    set_options(keywords_of(given), keywords);
+    for (const Option& option : options_of(given.labels)) {
+        if (keywords.contains(option.key())) {
+            throw Error(ErrorCode::InvalidInput, "has no effect on surfaces", option.key(), "an array of labels");
+        }
+    }
     std::vector<MaterialSurface> materials;
     for (const auto& [name, points, triangles] : surfaces) materials.push_back({name, surface_of(points, triangles)});
     ControlMesh made = result_of(progress, [&](Progress* listener) {
-        options.progress = listener;
-        return control_mesh_of(materials, options);
+        given.mesh.progress = listener;
+        return control_mesh_of(materials, given.mesh);
     });
     return py::make_tuple(with_sets(std::move(made.mesh), std::move(made.sets)), dict_of(facts_of(made.report)));
+}
+
+template <class Number>
+using Packed = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+
+/// all: labels (nx, ny, nz), the last axis fastest; rows: (4, 4), from their indices to the world; both are checked
+py::tuple control_mesh_of_labels(const Packed<std::int64_t>& all, const Packed<double>& rows, const py::object& progress,
+                                 const py::kwargs& keywords) {
+    GivenControlMesh given;
+    set_options(keywords_of(given), keywords);
+    // The grid counts the last axis first.
+    Mat3 to_world;
+    Vec3 origin;
+    for (int k = 0; k < 3; ++k) {
+        for (int axis = 0; axis < 3; ++axis) to_world[2 - axis][k] = rows.at(k, axis);
+        origin[k] = rows.at(k, 3);
+    }
+    LabelGrid grid(to_world, origin);
+    LabelRows voxels(grid, {static_cast<std::size_t>(all.shape(2)), static_cast<std::size_t>(all.shape(1)),
+                            static_cast<std::size_t>(all.shape(0))});
+    voxels.take({all.data(), static_cast<std::size_t>(all.size())});
+    voxels.finish();
+    Facts facts;
+    ControlMesh made = result_of(progress, [&](Progress* listener) {
+        given.mesh.progress = given.labels.progress = listener;
+        LabelSurfaces surfaces = label_surfaces(grid, given.labels);
+        facts = facts_of(surfaces.report);
+        return control_mesh_of(surfaces.materials, given.mesh);
+    });
+    facts.merge(facts_of(made.report));
+    return py::make_tuple(with_sets(std::move(made.mesh), std::move(made.sets)), dict_of(facts));
 }
 
 py::tuple read_triangles(const std::string& path) {
@@ -607,7 +651,8 @@ void bind_measure(py::module_& module) {
     module.def("fit_shape", &fit_shape_of, py::arg("mesh"), py::arg("points"), py::arg("triangles"), py::arg("progress"));
     describe_call<FitShapeOptions>(module, "fit_shape");
     module.def("control_mesh", &control_mesh, py::arg("surfaces"), py::arg("progress"));
-    describe_call<ControlMeshOptions>(module, "control_mesh");
+    module.def("control_mesh_of_labels", &control_mesh_of_labels, py::arg("labels"), py::arg("transform"), py::arg("progress"));
+    describe_call<GivenControlMesh>(module, "control_mesh");
     module.def("read_surface", &read_triangles, py::arg("path"));
     module.def("check_folds", &check_folds_of, py::arg("mesh"), py::arg("progress"));
     describe_call<FoldOptions>(module, "check_folds");

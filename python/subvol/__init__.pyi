@@ -114,18 +114,25 @@ def check_folds_between(
 
 def control_mesh(
     points: Union[npt.ArrayLike, Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]],
-    triangles: Optional[npt.ArrayLike] = None, *, scheme: str = 'mcq', tension: float = 0.0625,
-    crease_angle: Optional[Union[float, str]] = None, cells: int = 24, max_cells: int = 2000000, rounds: int = 15,
-    refine: int = 0, tolerance: float = 0.25, sharp_angle: float = 40.0, keep_folds: bool = False,
-    boundary_move: float = 0.2, progress: Progress = None
+    triangles: Optional[npt.ArrayLike] = None, *, voxel_size: Optional[npt.ArrayLike] = None,
+    origin: Optional[npt.ArrayLike] = None, transform: Optional[npt.ArrayLike] = None, scheme: str = 'mcq',
+    tension: float = 0.0625, crease_angle: Optional[Union[float, str]] = None, cells: int = 24,
+    max_cells: int = 2000000, rounds: int = 15, refine: int = 0, tolerance: float = 0.25, sharp_angle: float = 40.0,
+    keep_folds: bool = False, boundary_move: float = 0.2, label: Sequence[str] = (), smooth: int = 40,
+    progress: Progress = None
 ) -> tuple[HexMesh, ControlMeshReport]:
-    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials with a surface each.
+    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials: with a surface each, or the labels of voxels.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside. Of several materials
     `points` alone, by name: `{"bone": (points, triangles), "skin": read_surface("skin.stl")}`. A place in more than one has the
-    material of the surface that encloses least; `mesh.sets` has the cells of each.
+    material of the surface that encloses least; `mesh.sets` has the cells of each. Or `points` alone as an array (nx,ny,nz) of
+    integers: the labels of voxels, 0 outside, of which each becomes a material.
+    voxel_size: of labels, the edge of the voxels, or three for voxels that are no cubes; None: 1
+    origin:     of labels, the centre of voxel 0, 0, 0; None: (0, 0, 0)
+    transform:  of labels, in place of voxel_size and origin, (4, 4): the world place of label [i, j, k] is transform @ (i, j, k, 1)
     Returns the mesh, whose patch `lid` has the sides over holes, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world,
-    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, and surface:
+    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, of labels name, label, voxels, voxels_world
+    (their volume) and enclosed_world (by the smooth surface), and surface:
     walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
     sheets and turned triangles, one_sided and many_edges.
 
@@ -144,6 +151,10 @@ def control_mesh(
     keep_folds:  leave the points where they are if the limit folds
     boundary_move: points of the boundary may move by this part of their shortest edge where the limit folds [0 to 10; not
                  with keep_folds]
+    label:       of labels: one that becomes a material, and the name of its set (label_N without one); all others are
+                 outside. Without this option all labels become materials
+    smooth:      of labels: rounds of smoothing, in which no point leaves the place between its voxels (0: their steps) [0
+                 to 1000]
     """
 
 def evaluate_limit(

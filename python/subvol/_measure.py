@@ -215,21 +215,63 @@ def fit_shape(mesh: HexMesh, points: npt.ArrayLike, triangles: npt.ArrayLike, *,
         return fitted, report
 
 
+def _placed(voxel_size: Optional[npt.ArrayLike], origin: Optional[npt.ArrayLike], transform: Optional[npt.ArrayLike]) -> npt.NDArray[np.float64]:
+    """The transform (4,4) of voxels, from itself or from the others."""
+    if transform is not None:
+        placed = np.asarray(transform, np.float64)
+        if voxel_size is not None or origin is not None or placed.shape != (4, 4) or not np.array_equal(placed[3], [0, 0, 0, 1]):
+            raise InvalidInput("transform: places no voxels ((4, 4) numbers whose last row is 0, 0, 0, 1, without voxel_size and origin)",
+                               "transform", "(4, 4) numbers")
+        return placed
+    placed = np.eye(4)
+    size = np.asarray(1.0 if voxel_size is None else voxel_size, np.float64)
+    first = np.zeros(3) if origin is None else np.asarray(origin, np.float64)
+    if size.shape not in ((), (3,)) or not (size > 0).all():
+        raise InvalidInput("voxel_size: is not the size of a voxel (its edge in the world, above 0, or three of them)", "voxel_size", "above 0")
+    if first.shape != (3,):
+        raise InvalidInput("origin: is not a place (three numbers: the centre of voxel 0, 0, 0)", "origin", "three numbers")
+    placed[:3, :3] *= size
+    placed[:3, 3] = first
+    return placed
+
+
 @described
 def control_mesh(points: Union[npt.ArrayLike, Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]], triangles: Optional[npt.ArrayLike] = None, *,
+                 voxel_size: Optional[npt.ArrayLike] = None, origin: Optional[npt.ArrayLike] = None, transform: Optional[npt.ArrayLike] = None,
                  progress: Progress = None, **options: Any) -> tuple[HexMesh, ControlMeshReport]:
-    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials with a surface each.
+    """A mesh of hexahedra whose limit fills a closed surface of triangles, or several materials: with a surface each, or the labels of voxels.
 
     points, triangles: (n,3) and (m,3), as `read_surface` and `surface` have them; either side may be outside. Of several materials
     `points` alone, by name: `{"bone": (points, triangles), "skin": read_surface("skin.stl")}`. A place in more than one has the
-    material of the surface that encloses least; `mesh.sets` has the cells of each.
+    material of the surface that encloses least; `mesh.sets` has the cells of each. Or `points` alone as an array (nx,ny,nz) of
+    integers: the labels of voxels, 0 outside, of which each becomes a material.
+    voxel_size: of labels, the edge of the voxels, or three for voxels that are no cubes; None: 1
+    origin:     of labels, the centre of voxel 0, 0, 0; None: (0, 0, 0)
+    transform:  of labels, in place of voxel_size and origin, (4, 4): the world place of label [i, j, k] is transform @ (i, j, k, 1)
     Returns the mesh, whose patch `lid` has the sides over holes, and a report as of `fit_shape`, with parts (that are not joined), added, side_world, enclosed_world,
-    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, and surface:
+    min_scaled_jacobian, lid_sides, of materials name, cells, volume_world and enclosed_world, of labels name, label, voxels, voxels_world
+    (their volume) and enclosed_world (by the smooth surface), and surface:
     walls (closed parts), united (that cross others), cavities, cavities_alike (with the orientation of the wall around them), copies,
     sheets and turned triangles, one_sided and many_edges.
 
     {keywords}
     """
+    if not isinstance(points, Mapping) and triangles is None:
+        labels = np.asarray(points)
+        if labels.ndim == 3 and labels.dtype.kind in "iu":
+            wrong = (labels < 0) | (labels > 2147483647)
+            if wrong.any():
+                at = tuple(int(i) for i in np.unravel_index(wrong.argmax(), wrong.shape))
+                raise InvalidInput(f"labels: voxel {at} has the label {labels[at]} (0 outside, and labels from 1 to 2147483647)", "labels", "1 to 2147483647")
+            placed = _placed(voxel_size, origin, transform)
+            with listening(progress) as listener:
+                mesh, report = _core.control_mesh_of_labels(np.ascontiguousarray(labels, np.int64), placed, listener, **options)
+                return mesh, report
+        if labels.ndim == 3:
+            raise InvalidInput(f"labels: are of the type {labels.dtype} (an array (nx,ny,nz) of integers)", "labels", "integers")
+    for name, value in (("voxel_size", voxel_size), ("origin", origin), ("transform", transform)):
+        if value is not None:
+            raise InvalidInput(f"{name}: has no effect on surfaces (an array (nx,ny,nz) of labels)", name, "None")
     if isinstance(points, Mapping):
         if triangles is not None:
             raise InvalidInput("triangles: have no effect beside surfaces by name", "triangles", "none")

@@ -288,9 +288,20 @@ class Material(_EnclosedMaterial):
     volume_world: float
 
 
+class Label(TypedDict):
+    """A label of voxels by `control_mesh`; voxels_world: the volume of its voxels, enclosed_world: by its smooth surface."""
+
+    name: str
+    label: int
+    voxels: int
+    voxels_world: float
+    enclosed_world: float
+
+
 class _Enclosed(TypedDict, total=False):
     enclosed_world: float  # if the surface has no holes and no parts cross
     materials: list[Material]  # if there are several
+    labels: list[Label]  # of voxels
     thin: ThinParts  # if the mesh is not as it should be
 
 

@@ -133,6 +133,8 @@ def approximate(files):
     files.surface("statue.obj")
     files.surface("skin.stl")
     files.surface("bone.stl", "--warp", "vector(-.4*x,-.4*y,-.4*z)")
+    labels = [1 if x < 8 else 2 for z in range(12) for y in range(12) for x in range(16)]
+    (files.folder / "scan.nrrd").write_text("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 16 12 12\nencoding: ascii\n\n" + " ".join(map(str, labels)))
     files.fog("smoke.vdb")
     files.case(files.folder)
     (files.folder / "case.foam").touch()

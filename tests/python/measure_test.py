@@ -226,6 +226,37 @@ def test_several_surfaces_are_materials_of_one_mesh():
         subvol.control_mesh(surfaces, outer.triangles)
 
 
+def test_labels_of_voxels_are_materials_of_one_mesh():
+    i, j, k = np.meshgrid(*(np.arange(n, dtype=float) for n in (30, 24, 40)), indexing="ij")
+    place = np.stack([i, 1.25 * j, .75 * k], axis=-1) - np.array([14.5, 14.375, 14.625])
+    labels = np.where(np.linalg.norm(place, axis=-1) < 12, np.where(np.linalg.norm(place, axis=-1) < 7, 9, 4), 0)
+    # the axes x, y, z as z, x, y of the world
+    transform = np.array([[0, 1.25, 0, 100], [0, 0, .75, -7], [1, 0, 0, 3], [0, 0, 0, 1]])
+    mesh, report = subvol.control_mesh(labels.astype(np.uint8), transform=transform, cells=8, label=["9=core", "4"])
+    assert list(mesh.sets) == ["core", "label_4"]
+    core, rest = report["labels"]
+    assert (core["label"], rest["label"], core["voxels"]) == (9, 4, np.count_nonzero(labels == 9))
+    assert core["voxels_world"] == pytest.approx(core["voxels"] * .9375) and core["enclosed_world"] == pytest.approx(core["voxels_world"], rel=1e-3)
+    volumes = {material["name"]: material["volume_world"] for material in report["materials"]}
+    assert volumes["core"] == pytest.approx(4 / 3 * np.pi * 7**3, rel=.03)
+    assert volumes["label_4"] == pytest.approx(4 / 3 * np.pi * (12**3 - 7**3), rel=.03)
+    middle = transform[:3] @ [14.5, 14.375 / 1.25, 14.625 / .75, 1]
+    np.testing.assert_allclose(.5 * (mesh.points.min(axis=0) + mesh.points.max(axis=0)), middle, atol=.5)
+    with pytest.raises(subvol.InvalidInput, match="labels: are of the type float64"):
+        subvol.control_mesh(labels * .5)
+    with pytest.raises(subvol.InvalidInput, match="label: no voxel has the label 3 .labels: 4, 9."):
+        subvol.control_mesh(labels, label=["3"])
+    with pytest.raises(subvol.InvalidInput, match="voxel_size: is not the size of a voxel"):
+        subvol.control_mesh(labels, voxel_size=[1, -1, 1])
+    with pytest.raises(subvol.InvalidInput, match="voxel .0, 0, 0. has the label -1"):
+        subvol.control_mesh(labels - 1)
+    boundary = subvol.surface(subvol.model("ball", 4), tolerance=.05)
+    with pytest.raises(subvol.InvalidInput, match="smooth: has no effect on surfaces"):
+        subvol.control_mesh(boundary.points, boundary.triangles, smooth=3)
+    with pytest.raises(subvol.InvalidInput, match="origin: has no effect on surfaces"):
+        subvol.control_mesh(boundary.points, boundary.triangles, origin=(0, 0, 0))
+
+
 def test_folds_are_mended():
     twist = subvol.model("twist", 6)
     points = twist.points.copy()

@@ -63,6 +63,7 @@ def test_reports_have_the_types_that_they_say(tmp_path, ball):
     check(subvol.fit_shape(ball, boundary.points, boundary.triangles)[1], reports.ShapeReport, "fit_shape")
     check(subvol.control_mesh(boundary.points, boundary.triangles, cells=4)[1], reports.ControlMeshReport, "control_mesh")
     check(subvol.control_mesh(boundary.points, boundary.triangles[1:], cells=4)[1], reports.ControlMeshReport, "control_mesh of an open surface")
+    check(subvol.control_mesh(np.ones((8, 8, 8), int), cells=4)[1], reports.ControlMeshReport, "control_mesh of labels")
     check(subvol.mend_folds(ball)[2], reports.MendReport, "mend_folds")
     folded = ball.points.copy()
     folded[ball.cells[0, 6]] += [2, 2, 2]

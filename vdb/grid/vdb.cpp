@@ -49,6 +49,10 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
         report.kind = "integer";
         set_range(
             *integers, [](std::int32_t v) { return static_cast<double>(v); }, report);
+    } else if (const auto* wide = dynamic_cast<const openvdb::Int64Grid*>(&grid)) {
+        report.kind = "integer";
+        set_range(
+            *wide, [](std::int64_t v) { return static_cast<double>(v); }, report);
     } else {
         report.kind = grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
     }

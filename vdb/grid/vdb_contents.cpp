@@ -38,8 +38,9 @@ float component_of(const openvdb::Vec3s& v, std::optional<int> component) {
 }  // namespace
 
 VdbContents read_vdb_contents(const std::filesystem::path& path) {
-    const std::array<std::string, 4> types{openvdb::FloatGrid::gridType(), openvdb::Vec3SGrid::gridType(),
-                                           openvdb::Int32Grid::gridType(), openvdb::MaskGrid::gridType()};
+    const std::array<std::string, 5> types{openvdb::FloatGrid::gridType(), openvdb::Vec3SGrid::gridType(),
+                                           openvdb::Int32Grid::gridType(), openvdb::Int64Grid::gridType(),
+                                           openvdb::MaskGrid::gridType()};
     VdbContents contents;
     for (const auto& grid : read_grids(path, types, [&](const std::string&name, const std::string&type) {
              contents.others.push_back({printable(name), printable(type)});
@@ -62,6 +63,8 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
             converted(*vectors, [&](auto& at, const openvdb::Coord& c) { return component_of(at.getValue(c), component); });
     } else if (const auto* integers = dynamic_cast<const openvdb::Int32Grid*>(data.grid.get())) {
         floats = converted(*integers, [](auto& at, const openvdb::Coord& c) { return static_cast<float>(at.getValue(c)); });
+    } else if (const auto* wide = dynamic_cast<const openvdb::Int64Grid*>(data.grid.get())) {
+        floats = converted(*wide, [](auto& at, const openvdb::Coord& c) { return static_cast<float>(at.getValue(c)); });
     } else if (const auto* mask = dynamic_cast<const openvdb::MaskGrid*>(data.grid.get())) {
         floats = converted(*mask, [](auto&, const openvdb::Coord&) { return 1.0f; });
     } else {

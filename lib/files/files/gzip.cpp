@@ -87,6 +87,17 @@ std::string read_maybe_gzipped(const std::filesystem::path& path, const MostByte
     return text;
 }
 
+bool each_gunzipped(std::string_view bytes, const std::function<void(std::string_view)>& take) {
+    Gunzip in(bytes);
+    std::string piece;
+    for (bool more = true; more;) {
+        piece.clear();
+        more = in.append_to(piece);
+        if (!piece.empty()) take(piece);
+    }
+    return in.whole();
+}
+
 std::string start_of_maybe_gzipped(const std::filesystem::path& path, std::size_t bytes) {
     std::filesystem::path packed;
     const bool is_packed = is_gzipped(path, packed);

@@ -15,7 +15,7 @@ struct VdbContents {
     struct Other {
         std::string name, type;
     };
-    std::vector<VdbGrid> grids;  ///< grids of floats, vectors of floats, 32-bit integers and masks
+    std::vector<VdbGrid> grids;  ///< grids of floats, vectors of floats, integers of 32 and 64 bits, and masks
     std::vector<Other> others;   ///< grids of other types, which are not read
 };
 

@@ -23,4 +23,9 @@ using MostBytes = std::function<std::size_t(std::string_view beginning)>;
 /// throws: as `read_maybe_gzipped`
 [[nodiscard]] std::string start_of_maybe_gzipped(const std::filesystem::path& path, std::size_t bytes);
 
+/// Decompresses all members of gzipped bytes and calls take(piece) with no more than a megabyte at a time.
+///
+/// returns: whether the bytes are whole; take may throw where there are more than it needs
+[[nodiscard]] bool each_gunzipped(std::string_view bytes, const std::function<void(std::string_view piece)>& take);
+
 }  // namespace subvol::detail
