@@ -18,7 +18,6 @@
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
-#include "subvol/vdb_labels.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
 

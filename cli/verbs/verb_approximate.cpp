@@ -33,7 +33,6 @@
 #include "steps.h"
 #include "subvol/approximate.h"
 #include "subvol/approximator.h"
-#include "subvol/detail/missing_file.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/fit_shape.h"

@@ -9,7 +9,7 @@
 #include "points_input.h"
 #include "quantities.h"
 #include "steps.h"
-#include "subvol/detail/missing_file.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 #include "subvol/option.h"
 #include "subvol/picture_look.h"

@@ -10,7 +10,7 @@
 
 #include "foreign_texts.h"
 #include "formats.h"
-#include "subvol/detail/missing_file.h"
+#include "subvol/detail/refuse_surface.h"
 
 namespace subvol {
 

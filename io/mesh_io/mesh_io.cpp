@@ -27,7 +27,6 @@
 #endif
 #include "subvol/cell_means.h"
 #include "subvol/detail/error_text.h"
-#include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/refuse_surface.h"
 #include "subvol/detail/text_scanner.h"

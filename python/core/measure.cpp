@@ -25,7 +25,6 @@
 #include "subvol/detail/limit_words.h"
 #include "subvol/fit_shape.h"
 #include "subvol/flow_surface.h"
-#include "subvol/label_surfaces.h"
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"

@@ -12,7 +12,7 @@
 #include "bind.h"
 #include "given_grids.h"
 #include "grid_arrays.h"
-#include "subvol/detail/shared_grid.h"
+#include "subvol/detail/vdb_file.h"
 #include "subvol/nanovdb.h"
 #include "subvol/option.h"
 #include "subvol/rasterize.h"

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "subvol/detail/printable.h"
-#include "subvol/detail/shared_grid.h"
 #include "subvol/detail/vdb_file.h"
 #include "vdb_data.h"
 

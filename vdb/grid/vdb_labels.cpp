@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/vdb_labels.h"
+#include "subvol/grid_surface.h"
 
 #include "openvdb_grids.h"
 

@@ -10,9 +10,9 @@
 #include <system_error>
 #include <tuple>
 
-#include "subvol/detail/missing_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/refuse_surface.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

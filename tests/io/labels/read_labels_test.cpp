@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "lib/temp_folder.h"
-#include "subvol/label_surfaces.h"
+#include "subvol/control_mesh.h"
 
 namespace subvol {
 namespace read_labels_test {

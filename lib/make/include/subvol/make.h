@@ -23,5 +23,4 @@
 #include "subvol/control_mesh.h"
 #include "subvol/fit_shape.h"
 #include "subvol/label_grid.h"
-#include "subvol/label_surfaces.h"
 #include "subvol/read_surface.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/label_surfaces.h"
+#include "subvol/control_mesh.h"
 
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>

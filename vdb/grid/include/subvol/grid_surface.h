@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "subvol/label_grid.h"
 #include "subvol/surface.h"
 #include "subvol/vdb_grid.h"
 
@@ -16,5 +17,12 @@ namespace subvol {
 /// throws: Error(InvalidInput) if the voxels are not floats, or the grid has the value nowhere; names its range
 /// source: OpenVDB's volumeToMesh
 [[nodiscard]] Surface grid_surface(const VdbGrid& grid, std::optional<double> value = {});
+
+/// The labels of a grid of integers; voxels that are not active are outside.
+///
+/// throws: Error(InvalidInput) if the voxels are not integers, if a label is not from 0 to 2^31−1, if the transform is not
+///         linear or singular, or if there are more than 2^31 voxels with labels
+/// cost:   O(leaves and active tiles)
+[[nodiscard]] LabelGrid labels_of_grid(const VdbGrid& grid);
 
 }  // namespace subvol

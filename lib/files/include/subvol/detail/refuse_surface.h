@@ -26,4 +26,9 @@ namespace subvol::detail {
 /// throws: Error(InvalidInput), with the command that makes a control mesh of the file
 [[noreturn]] void refuse_surface(const std::filesystem::path& path);
 
+/// For messages about what kind of file one is: a file that is not there is none.
+///
+/// throws: Error(Io) if there is no such file
+void refuse_missing(const std::filesystem::path& path);
+
 }  // namespace subvol::detail

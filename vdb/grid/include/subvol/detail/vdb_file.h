@@ -13,4 +13,8 @@ namespace subvol::detail {
 void write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
                VdbCompression compression);
 
+/// Another object for the same grid: the voxels are shared, the report is copied. For those who need grids side by side that
+/// lie elsewhere, and that others use meanwhile.
+[[nodiscard]] VdbGrid shared_grid(const VdbGrid& grid);
+
 }  // namespace subvol::detail
