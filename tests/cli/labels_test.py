@@ -47,7 +47,7 @@ class Labels(InFolder):
                 self.assertIn(done.code, (0, 1), done.err)
                 self.assertEqual([label["voxels"] for label in done.json()["labels"]], [int((labels == 7).sum())], file)
                 continue
-            found = self.make(file, "--cells", "8", "--label", "7=core", "--label", "2=rest")
+            found = self.make(file, "--cells", "6", "--label", "7=core", "--label", "2=rest")
             self.assertEqual([material["name"] for material in found["materials"]], ["core", "rest"])
             for label, material in zip(found["labels"], found["materials"]):
                 count = int((labels == label["label"]).sum())

@@ -12,7 +12,7 @@ import warnings
 import subvol
 
 LIBRARY = os.environ.get("SUBVOL_FAIL_CALLS", "")
-MOST = int(os.environ.get("SUBVOL_FAILED_CALLS", "4"))
+MOST = int(os.environ.get("SUBVOL_FAILED_CALLS", "2"))
 
 
 def calls():
