@@ -181,7 +181,8 @@ private:
 /// Draws the shapes of a vector graphic.
 class GraphicShapes {
 public:
-    explicit GraphicShapes(CairoFile& file) : file_(file), cairo_(file.cairo()) {}
+    /// fault: why a picture cannot be drawn
+    GraphicShapes(CairoFile& file, std::string& fault) : file_(file), cairo_(file.cairo()), fault_(fault) {}
 
     void operator()(const LineShape& line) const {
         if (line.places.size() < 2) return;
@@ -208,7 +209,9 @@ public:
     void operator()(const PictureShape& picture) const {
         std::string_view rest = picture.png;
         cairo_surface_t* const pixels = cairo_image_surface_create_from_png_stream(&take, &rest);
-        if (cairo_surface_status(pixels) == CAIRO_STATUS_SUCCESS) {
+        if (const cairo_status_t status = cairo_surface_status(pixels); status != CAIRO_STATUS_SUCCESS) {
+            fault_ = cairo_status_to_string(status);
+        } else {
             cairo_save(cairo_);
             cairo_translate(cairo_, picture.corner.x, picture.corner.y);
             cairo_scale(cairo_, picture.size.x / cairo_image_surface_get_width(pixels),
@@ -240,6 +243,7 @@ private:
 
     CairoFile& file_;
     cairo_t* cairo_;
+    std::string& fault_;
 };
 
 std::string graphic_file(const VectorGraphic& graphic, const std::string& title, std::string& fault) {
@@ -248,7 +252,7 @@ std::string graphic_file(const VectorGraphic& graphic, const std::string& title,
     cairo_scale(file.cairo(), kPointsPerPixel, kPointsPerPixel);
     cairo_set_line_cap(file.cairo(), CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(file.cairo(), CAIRO_LINE_JOIN_ROUND);
-    const GraphicShapes shapes(file);
+    const GraphicShapes shapes(file, fault);
     const Vec2 end(graphic.width, graphic.height);
     shapes(AreaShape{{{0, 0}, {end.x, 0}, end, {0, end.y}}, graphic.background});
     for (const auto& shape : graphic.shapes) std::visit(shapes, shape);

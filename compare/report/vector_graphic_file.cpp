@@ -2,6 +2,7 @@
 #include "pdf_canvas.h"
 #include "subvol/detail/module.h"
 #include "subvol/detail/output_file.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/plot.h"
 
@@ -20,7 +21,7 @@ void write_vector_graphic(const std::filesystem::path& path, const VectorGraphic
     if (path.extension() == ".svg") {
         bytes = vector_graphic_svg(graphic, title);
     } else if (path.extension() == ".pdf") {
-        bytes = cairo("writing pictures as .pdf").graphic(graphic, title, fault);
+        bytes = cairo("writing pictures as .pdf").graphic(graphic, printable(title), fault);
     } else {
         throw Error(ErrorCode::InvalidInput, "is not the name of a vector graphic", path.string(), ".svg or .pdf");
     }

@@ -312,6 +312,11 @@ class Slice(Refusing):
         for points, pixels in zip(box.groups(), (svg.get("width"), svg.get("height"))):
             self.assertAlmostEqual(float(points), .75 * float(pixels), delta=.01)
         self.assertIn(b"DejaVuSans", first[0])
+        # Bytes that are no letters are boxes, in a .pdf too.
+        for name in ("b.svg", "b.pdf"):
+            done = subvol("slice", "model:ball:2", "-o", name, "--resolution", 20, "--title", os.fsdecode(b"a\xffb"), folder=self.folder)
+            self.assertEqual((done.code, "boxes stand for letters" in done.err), (0, True), done.err)
+        ElementTree.parse(self.folder / "b.svg")
 
     def test_what_makes_no_sense_is_refused(self):
         for words, naming in [(["--plane", "0,0,0,0,0,0"], "direction"), (["--plane", "0,0,9,0,0,1"], "misses"),

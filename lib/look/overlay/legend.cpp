@@ -20,7 +20,6 @@
 #include <initializer_list>
 #include <pugixml.hpp>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "subvol/detail/knot_values.h"
@@ -61,17 +60,9 @@ public:
     [[nodiscard]] std::string svg() const {
         const int below =
             named() ? kTop + kRow * static_cast<int>(options_.names.size()) + kGap : kBarEnd + kBottom + (apart() ? kApart : 0);
-        const std::string width = std::to_string(end_ + kRight), height = std::to_string(below);
         pugi::xml_document document;
-        const pugi::xml_node svg = append_element(document, "svg",
-                                                  {{"xmlns", "http://www.w3.org/2000/svg"},
-                                                   {"width", width},
-                                                   {"height", height},
-                                                   {"viewBox", "0 0 " + width + " " + height},
-                                                   {"font-family", "sans-serif"},
-                                                   {"font-size", "12"},
-                                                   {"fill", kInk}});
-        append_element(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
+        const pugi::xml_node svg = append_svg(document, end_ + kRight, below, "#fff",
+                                              {{"font-family", "sans-serif"}, {"font-size", "12"}, {"fill", kInk}});
         append_text(svg, 0.5 * (kLeft + end_), 20, "middle",
                     options_.note.empty() ? options_.title : options_.title + ", " + options_.note)
             .append_attribute("style")
@@ -83,9 +74,7 @@ public:
             append_opacity(svg);
             append_bar(svg);
         }
-        std::ostringstream text;
-        document.save(text, " ", pugi::format_default | pugi::format_no_declaration);
-        return text.str();
+        return svg_text(document);
     }
 
 private:

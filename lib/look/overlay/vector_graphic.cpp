@@ -39,6 +39,25 @@ pugi::xml_node detail::append_element(pugi::xml_node parent, const char* name,
     return node;
 }
 
+pugi::xml_node detail::append_svg(pugi::xml_document& document, int width, int height, const std::string& sheet_color,
+                                  std::initializer_list<std::pair<const char*, std::string>> attributes) {
+    const std::string across = std::to_string(width), down = std::to_string(height);
+    pugi::xml_node svg = append_element(document, "svg",
+                                        {{"xmlns", "http://www.w3.org/2000/svg"},
+                                         {"width", across},
+                                         {"height", down},
+                                         {"viewBox", "0 0 " + across + " " + down}});
+    for (const auto& [key, value] : attributes) svg.append_attribute(key).set_value(value.c_str());
+    append_element(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", sheet_color}});
+    return svg;
+}
+
+std::string detail::svg_text(const pugi::xml_document& document) {
+    std::ostringstream text;
+    document.save(text, " ", pugi::format_default | pugi::format_no_declaration);
+    return text.str();
+}
+
 namespace {
 
 std::string path_of(std::span<const Vec2> places) {
@@ -103,20 +122,12 @@ private:
 }  // namespace
 
 std::string vector_graphic_svg(const VectorGraphic& graphic, const std::string& title) {
-    const std::string width = std::to_string(graphic.width), height = std::to_string(graphic.height);
     pugi::xml_document document;
-    const pugi::xml_node svg = append_element(document, "svg",
-                                              {{"xmlns", "http://www.w3.org/2000/svg"},
-                                               {"width", width},
-                                               {"height", height},
-                                               {"viewBox", "0 0 " + width + " " + height},
-                                               {"font-family", "'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif"}});
-    if (!title.empty()) append_element(svg, "title", {}).text().set(printable(title).c_str());
-    append_element(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", svg_color(graphic.background)}});
+    pugi::xml_node svg = append_svg(document, graphic.width, graphic.height, svg_color(graphic.background),
+                                    {{"font-family", "'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif"}});
+    if (!title.empty()) svg.prepend_child("title").text().set(printable(title).c_str());
     for (const auto& shape : graphic.shapes) std::visit(SvgShapes(svg), shape);
-    std::ostringstream text;
-    document.save(text, " ", pugi::format_default | pugi::format_no_declaration);
-    return text.str();
+    return svg_text(document);
 }
 
 }  // namespace subvol

@@ -118,6 +118,7 @@ struct MappedFields {
 
 /// The fields of a mesh at the points of another one: trilinear in the cells of the data as they are, without a limit and
 /// without a fit. A linear function of places is met, and so are the data's own values where the points are its own.
+/// A field that is constant in each cell has the value of the cell.
 ///
 /// onto:   its attributes are left out
 /// data:   with attributes

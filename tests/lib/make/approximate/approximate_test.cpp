@@ -62,6 +62,17 @@ TEST(Approximate, MapsTheValuesOfCellsToPoints) {
         EXPECT_NEAR(mapped.mesh.attributes[1].values[2 * p + 1], -linear(nearest), 1e-9) << p;
     }
     EXPECT_EQ(mapped.report.outside, 4U);
+    // A label is that of the cell, never a mean of labels: outside, that of the nearest one.
+    HexMesh labelled = make_box(2, 1, 1);
+    labelled.attributes = {{.name = "material",
+                            .channels = 1,
+                            .values = std::vector<double>(labelled.points.size(), 5.5),
+                            .cells = {3, 8},
+                            .constant = true}};
+    HexMesh places = onto;
+    places.points = {{0.9, 0.5, 0.5}, {1.1, 0.5, 0.5}, {0.2, 0.2, 0.2}, {1.8, 0.3, 0.3},
+                     {0.9, 0.5, -1},  {1.2, 1.5, 0.5}, {-1, 0, 0},      {3, 1, 1}};
+    EXPECT_EQ(map_fields(places, labelled).mesh.attributes[0].values, (std::vector<double>{3, 8, 3, 8, 3, 8, 3, 8}));
     EXPECT_NEAR(mapped.report.farthest_world, std::sqrt(1 + 1 + 4), 1e-12);
     EXPECT_EQ(mapped.report.farthest_at, Vec3(3, 2, 3));
     EXPECT_THAT(error_of([&] { (void)map_fields(onto, HexMesh{}); }), HasSubstr("no cells"));
